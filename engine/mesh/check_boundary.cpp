@@ -1,0 +1,262 @@
+// Checks of the faces between cells and of the boundary, and of the named sets against them.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "engine/mesh/check_parts.h"
+
+namespace isochor::mesh_files {
+
+std::vector<CellFace> sorted_cell_faces(const Mesh& mesh) {
+  const auto width = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
+  std::vector<CellFace> faces;
+  faces.reserve(4 * at(mesh.cell_count()));
+  for (Index c = 0; c < mesh.cell_count(); ++c) {
+    const Index* n = &mesh.cells[width * at(c)];
+    for (std::size_t f = 0; f < 4; ++f) {
+      std::array<Index, 3> k{n[tet_faces[f][0]], n[tet_faces[f][1]], n[tet_faces[f][2]]};
+      bool odd = false;
+      const auto order = [&](std::size_t a, std::size_t b) {
+        if (k[a] <= k[b]) return;
+        std::swap(k[a], k[b]);
+        odd = !odd;
+      };
+      order(0, 1);
+      order(1, 2);
+      order(0, 1);
+      faces.push_back({k, c, static_cast<std::int8_t>(f), static_cast<std::int8_t>(odd ? 1 : 0)});
+    }
+  }
+  std::sort(faces.begin(), faces.end());
+  return faces;
+}
+
+std::array<Index, 3> outward_corners(const Mesh& mesh, const CellFace& face) {
+  const auto width = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
+  const Index* n = &mesh.cells[width * at(face.cell)];
+  const auto& corners = tet_faces[at(face.local)];
+  return {n[corners[0]], n[corners[1]], n[corners[2]]};
+}
+
+namespace {
+
+// An edge of a triangulated surface and the triangle it belongs to.
+struct SurfaceEdge {
+  std::array<Index, 2> ends;  // ascending
+  Index face = 0;
+  friend bool operator<(const SurfaceEdge& a, const SurfaceEdge& b) {
+    return a.ends != b.ends ? a.ends < b.ends : a.face < b.face;
+  }
+};
+
+using Triangles = std::vector<std::array<Index, 3>>;
+
+std::vector<SurfaceEdge> sorted_edges(const Triangles& triangles) {
+  std::vector<SurfaceEdge> edges;
+  edges.reserve(3 * triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(triangles[t][k], triangles[t][(k + 1) % 3]);
+      edges.push_back({{a, b}, static_cast<Index>(t)});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+// Calls `visit(first, last)` for each run of equal edges.
+template <class Visit>
+void for_each_edge(const std::vector<SurfaceEdge>& edges, Visit visit) {
+  for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {
+    while (last < edges.size() && edges[last].ends == edges[first].ends) ++last;
+    visit(first, last);
+  }
+}
+
+// Faces of one cell only; counts those that more than two cells share or two cells on one side.
+std::vector<CellFace> boundary_faces(const Mesh& mesh, const std::vector<CellFace>& faces,
+                                     MeshReport& report) {
+  std::vector<CellFace> boundary;
+  Tally crowded, folded;
+  for (std::size_t first = 0, last = 0; first < faces.size(); first = last) {
+    while (last < faces.size() && faces[last].corners == faces[first].corners) ++last;
+    if (last - first == 1) boundary.push_back(faces[first]);
+    if (last - first > 2) crowded.add(cell_label(mesh, faces[first].cell));
+    // Seen from two cells on its two sides a face has opposite orientations.
+    if (last - first == 2 && faces[first].odd == faces[first + 1].odd)
+      folded.add(cell_label(mesh, faces[first].cell));
+  }
+  crowded.report(report, Severity::error, "non-manifold-face", "face is", "faces are",
+                 "shared by more than two cells; remove the overlapping cells", "at cell ");
+  folded.report(report, Severity::error, "overlapping-cells", "face has", "faces have",
+                "both of its cells on one side; remove the overlapping cells", "at cell ");
+  return boundary;
+}
+
+void check_edges(const Mesh& mesh, const Triangles& triangles, const std::vector<SurfaceEdge>& edges,
+                 MeshReport& report) {
+  Tally crowded;
+  for_each_edge(edges, [&](std::size_t first, std::size_t last) {
+    if (last - first > 2) crowded.add(node_label(mesh, edges[first].ends[0]));
+  });
+  crowded.report(report, Severity::warning, "non-manifold-edge", "boundary edge joins", "boundary edges join",
+                 "more than two boundary faces; parts hinge there, thicken the joint", "at node ");
+  // Corners of triangles that share an edge at a node are joined; a node with two fans of triangles is
+  // pinched.
+  Groups fans(3 * triangles.size());
+  const auto corner = [&](Index face, Index node) {
+    const auto& t = triangles[at(face)];
+    return 3 * face + (t[0] == node ? 0 : (t[1] == node ? 1 : 2));
+  };
+  for_each_edge(edges, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first + 1; i < last; ++i) {
+      for (const Index end : edges[i].ends)
+        fans.join(corner(edges[first].face, end), corner(edges[i].face, end));
+    }
+  });
+  std::vector<Index> fan(mesh.nodes.size(), -1);
+  std::vector<bool> pinched(mesh.nodes.size(), false);
+  for (Index c = 0; c < static_cast<Index>(3 * triangles.size()); ++c) {
+    const Index node = triangles[at(c / 3)][at(c % 3)];
+    const Index root = fans.root(c);
+    if (fan[at(node)] >= 0 && fan[at(node)] != root) pinched[at(node)] = true;
+    fan[at(node)] = root;
+  }
+  Tally nodes;
+  for (Index n = 0; n < mesh.node_count(); ++n) {
+    if (pinched[at(n)]) nodes.add(node_label(mesh, n));
+  }
+  nodes.report(report, Severity::warning, "non-manifold-node", "node is", "nodes are",
+               "where boundaries touch in a point only; parts hinge there, thicken the joint");
+}
+
+// Six times the volume of the cone from `apex` to a boundary face. A curved face is taken as four flat ones
+// and the difference to one extrapolated, as the error falls with the square of the size.
+double cone6(const Mesh& mesh, const CellFace& face, const Vec3& apex) {
+  const auto width = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
+  const Index* n = &mesh.cells[width * at(face.cell)];
+  const auto cone = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+    return dot(cross(a - apex, b - apex), c - apex);
+  };
+  const auto& corner = tet_faces[at(face.local)];
+  std::array<Vec3, 3> x, mid;
+  for (std::size_t k = 0; k < 3; ++k) x[k] = mesh.nodes[at(n[corner[k]])];
+  const double one = cone(x[0], x[1], x[2]);
+  if (width == 4) return one;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int a = corner[k], b = corner[(k + 1) % 3];
+    for (std::size_t e = 0; e < 6; ++e) {
+      const bool same =
+          (tet_edges[e][0] == a && tet_edges[e][1] == b) || (tet_edges[e][0] == b && tet_edges[e][1] == a);
+      if (same) mid[k] = mesh.nodes[at(n[4 + e])];
+    }
+  }
+  const double four = cone(x[0], mid[0], mid[2]) + cone(mid[0], x[1], mid[1]) + cone(mid[2], mid[1], x[2]) +
+                      cone(mid[0], mid[1], mid[2]);
+  return (4 * four - one) / 3;
+}
+
+// The boundary seen from outside has positive volume; a component with negative volume encloses a void.
+void check_cavities(const Mesh& mesh, const std::vector<SurfaceEdge>& edges,
+                    const std::vector<CellFace>& boundary, MeshReport& report) {
+  Groups groups(boundary.size());
+  for_each_edge(edges, [&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first + 1; i < last; ++i) groups.join(edges[first].face, edges[i].face);
+  });
+  const Vec3 middle = 0.5 * (report.box[0] + report.box[1]);
+  std::map<Index, double> volume;
+  for (std::size_t t = 0; t < boundary.size(); ++t) {
+    volume[groups.root(static_cast<Index>(t))] += cone6(mesh, boundary[t], middle) / 6;
+  }
+  Tally cavities;
+  std::string sizes;
+  const Vec3 box = report.box[1] - report.box[0];
+  for (const auto& [root, v] : volume) {
+    if (!(v < -1e-12 * box.x * box.y * box.z)) continue;
+    cavities.add(cell_label(mesh, boundary[at(root)].cell));
+    if (cavities.count() <= 8) sizes += (sizes.empty() ? "" : ", ") + shown(-v);
+  }
+  cavities.report(report, Severity::note, "cavity", "inner closed surface", "inner closed surfaces",
+                  "with a volume of " + sizes + " m^3", "next to cell ");
+}
+
+Triangles corners_of(const MeshSurface& surface, std::size_t width) {
+  Triangles triangles;
+  for (std::size_t f = 0; f < surface.faces.size(); f += width) {
+    triangles.push_back({surface.faces[f], surface.faces[f + 1], surface.faces[f + 2]});
+  }
+  return triangles;
+}
+
+// How many closed loops the edges form that only one face has.
+std::int64_t count_loops(const Mesh& mesh, const std::vector<SurfaceEdge>& edges) {
+  Groups groups(mesh.nodes.size());
+  std::vector<Index> ends;
+  for_each_edge(edges, [&](std::size_t first, std::size_t last) {
+    if (last - first != 1) return;
+    groups.join(edges[first].ends[0], edges[first].ends[1]);
+    ends.push_back(edges[first].ends[0]);
+  });
+  for (Index& n : ends) n = groups.root(n);
+  std::sort(ends.begin(), ends.end());
+  return std::unique(ends.begin(), ends.end()) - ends.begin();
+}
+
+void check_surface(const Mesh& mesh, const MeshSurface& surface, const std::vector<CellFace>& faces,
+                   MeshReport& report) {
+  const auto add = [&](Severity severity, const char* code, std::int64_t count, const std::string& text) {
+    report.findings.push_back({severity, code, join("surface '", surface.name, "' ", text), count, {}});
+  };
+  const Triangles triangles = corners_of(surface, static_cast<std::size_t>(nodes_per_face(mesh.cell_type)));
+  if (triangles.empty())
+    return add(Severity::warning, "empty-surface", 1, "has no faces; nothing can act on it");
+  Triangles sorted = triangles;
+  Tally foreign;
+  for (auto& t : sorted) {
+    std::sort(t.begin(), t.end());
+    const auto found = std::lower_bound(faces.begin(), faces.end(), CellFace{t, -1, 0, 0});
+    if (found == faces.end() || found->corners != t) foreign.add(node_label(mesh, t[0]));
+  }
+  if (foreign.count() > 0) {
+    add(Severity::warning, "surface-off-mesh", foreign.count(),
+        "has " + foreign.text("face", "faces", "at node ") +
+            " that are faces of no cell (given by one of the nodes); mesh surface and volume together, "
+            "unless they "
+            "cap an opening");
+  }
+  std::sort(sorted.begin(), sorted.end());
+  const auto repeats = sorted.end() - std::unique(sorted.begin(), sorted.end());
+  if (repeats > 0) {
+    add(Severity::warning, "repeated-face", repeats,
+        join("has ", repeats, " faces twice, so that loads on it count twice; remove the copies"));
+  }
+  const std::int64_t loops = count_loops(mesh, sorted_edges(triangles));
+  if (loops > 0) {
+    add(Severity::note, "open-surface", loops,
+        join("is open, with ", loops, loops == 1 ? " boundary loop" : " boundary loops",
+             "; a cavity needs it closed or capped"));
+  }
+}
+
+}  // namespace
+
+void check_boundary(const Mesh& mesh, const std::vector<CellFace>& faces, MeshReport& report) {
+  const std::vector<CellFace> boundary = boundary_faces(mesh, faces, report);
+  Triangles triangles;
+  triangles.reserve(boundary.size());
+  for (const CellFace& face : boundary) triangles.push_back(outward_corners(mesh, face));
+  const std::vector<SurfaceEdge> edges = sorted_edges(triangles);
+  check_edges(mesh, triangles, edges, report);
+  check_cavities(mesh, edges, boundary, report);
+}
+
+void check_named_sets(const Mesh& mesh, const std::vector<CellFace>& faces, MeshReport& report) {
+  for (const MeshSurface& surface : mesh.surfaces) check_surface(mesh, surface, faces, report);
+  for (const MeshNodeSet& set : mesh.node_sets) {
+    if (!set.nodes.empty()) continue;
+    report.findings.push_back(
+        {Severity::warning, "empty-node-set", join("node set '", set.name, "' has no nodes"), 1, {}});
+  }
+}
+
+}  // namespace isochor::mesh_files

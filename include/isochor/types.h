@@ -1,0 +1,72 @@
+// Plain types that every host-facing header of Isochor uses. No third-party type appears here.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace isochor {
+
+using Index = std::int32_t;
+
+// A point, displacement [m], velocity [m/s] or force [N], by context.
+struct Vec3 {
+  double x = 0, y = 0, z = 0;
+
+  double& operator[](int i) { return i == 0 ? x : (i == 1 ? y : z); }
+  double operator[](int i) const { return i == 0 ? x : (i == 1 ? y : z); }
+  friend bool operator==(const Vec3&, const Vec3&) = default;
+};
+
+inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vec3 operator-(const Vec3& a) { return {-a.x, -a.y, -a.z}; }
+inline Vec3 operator*(double s, const Vec3& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline Vec3 operator*(const Vec3& a, double s) { return s * a; }
+inline Vec3& operator+=(Vec3& a, const Vec3& b) { return a = a + b; }
+inline Vec3& operator-=(Vec3& a, const Vec3& b) { return a = a - b; }
+inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// Why a call was refused: one sentence that names what, where, the value and the remedy.
+struct Error {
+  std::string message;
+};
+
+// A value or the reason why there is none. Never throws; value() of a failed result terminates.
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : content_(std::move(value)) {}
+  Result(Error error) : content_(std::move(error)) {}
+
+  explicit operator bool() const { return content_.index() == 0; }
+  bool ok() const { return content_.index() == 0; }
+  T& value() & { return *std::get_if<0>(&content_); }
+  const T& value() const& { return *std::get_if<0>(&content_); }
+  T&& value() && { return std::move(*std::get_if<0>(&content_)); }
+  const std::string& error() const { return std::get_if<1>(&content_)->message; }
+
+ private:
+  std::variant<T, Error> content_;
+};
+
+template <>
+class [[nodiscard]] Result<void> {
+ public:
+  Result() = default;
+  Result(Error error) : message_(std::move(error.message)), failed_(true) {}
+
+  explicit operator bool() const { return !failed_; }
+  bool ok() const { return !failed_; }
+  const std::string& error() const { return message_; }
+
+ private:
+  std::string message_;
+  bool failed_ = false;
+};
+
+}  // namespace isochor
