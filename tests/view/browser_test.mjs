@@ -1,0 +1,211 @@
+// Opens the demo pages in a real browser and looks at the pixels.
+// Usage: node browser_test.mjs PATH_OF_isochor_demo_page      (exit code 77: skipped)
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+
+const viewer = join(dirname(fileURLToPath(import.meta.url)), '../../viewer');
+const { Browser, MISSING, findChromium } = await import(pathToFileURL(join(viewer, 'chromium.mjs')).href);
+
+const demo = process.argv[2];
+if (!demo) {
+  console.error('usage: node browser_test.mjs PATH_OF_isochor_demo_page');
+  process.exit(2);
+}
+if (!findChromium()) {
+  console.log(`skipped: ${MISSING}`);
+  process.exit(77);
+}
+
+const folder = mkdtempSync(join(tmpdir(), 'isochor-view-test-'));
+
+function make(variant) {
+  const path = join(folder, `${variant || 'full'}.html`);
+  const run = spawnSync(demo, [path, variant].filter(Boolean), { encoding: 'utf8' });
+  if (/not built/.test(run.stderr)) {
+    console.log(`skipped: ${run.stderr.trim()}`);
+    rmSync(folder, { recursive: true, force: true });
+    process.exit(77);
+  }
+  assert.equal(run.status, 0, run.stderr);
+  return path;
+}
+
+const files = Object.fromEntries(['', 'broken', 'single', 'bare'].map((v) => [v || 'full', make(v)]));
+const browser = await Browser.launch();
+
+async function open(file, hash = '', window = {}) {
+  const page = await browser.open(`${pathToFileURL(files[file])}#${hash}`, window);
+  await page.waitFor('window.isochorReady === true');
+  assert.equal(await page.evaluate('window.isochorError ?? null'), null);
+  return page;
+}
+
+// Drawing and reading happen in one task: the canvas keeps its content no longer than that.
+const PIXELS = `(() => {
+  const { stage } = window.isochorViewer;
+  stage.draw();
+  const copy = new OffscreenCanvas(stage.canvas.width, stage.canvas.height).getContext('2d');
+  copy.drawImage(stage.canvas, 0, 0);
+  const { data } = copy.getImageData(0, 0, stage.canvas.width, stage.canvas.height);
+  let covered = 0, yellow = 0, gray = 0, hash = 0;
+  const colors = new Set();
+  for (let i = 0; i < data.length; i += 4) {
+    const [r, g, b, a] = [data[i], data[i + 1], data[i + 2], data[i + 3]];
+    hash = (hash * 31 + r + 7 * g + 13 * b + 17 * a) | 0;
+    if (a < 255) continue;
+    ++covered;
+    colors.add(r << 16 | g << 8 | b);
+    if (r > 150 && g > 150 && b < 110) ++yellow;
+    if (Math.max(r, g, b) - Math.min(r, g, b) < 14 && r > 120) ++gray;
+  }
+  return { covered, yellow, gray, hash, colors: colors.size, total: data.length / 4 };
+})()`;
+const pixels = (page) => page.evaluate(PIXELS);
+const settle = (page) => page.evaluate('new Promise((done) => setTimeout(() => requestAnimationFrame(done), 60))');
+
+async function finish(page) {
+  assert.deepEqual(page.errors, [], 'the page complained');
+  await page.close();
+}
+
+const tests = {
+  async 'the page opens without a complaint and without the network'() {
+    const start = performance.now();
+    const page = await open('full');
+    console.log(`    opened in ${Math.round(performance.now() - start)} ms`);
+    assert.equal(await page.evaluate(`performance.getEntriesByType('resource').filter((e) => !e.name.startsWith('data:')).length`), 0);
+    assert.equal(await page.evaluate('document.title'), 'Pneumatic finger');
+    const drawn = await pixels(page);
+    assert.ok(drawn.covered > 0.03 * drawn.total, `the body covers ${drawn.covered} pixels`);
+    assert.ok(drawn.colors > 200, `${drawn.colors} colors`);
+    assert.equal(await page.evaluate(`document.querySelectorAll('.plot canvas').length`), 5);
+    await finish(page);
+  },
+
+  async 'the slider moves the body and the marker of the plots'() {
+    const page = await open('full', 'frame=first');
+    const before = await pixels(page);
+    const plot = `document.querySelector('.plot canvas').toDataURL()`;
+    const plotBefore = await page.evaluate(plot);
+    await page.evaluate(`{ const s = document.querySelector('.transport input'); s.value = 10; s.dispatchEvent(new Event('input')); }`);
+    await page.waitFor('window.isochorViewer.frame.index === 10');
+    await settle(page);
+    assert.notEqual((await pixels(page)).hash, before.hash);
+    assert.notEqual(await page.evaluate(plot), plotBefore);
+    assert.match(await page.evaluate(`document.querySelector('.stamp').textContent`), /t = 1 s/);
+    await finish(page);
+  },
+
+  async 'the cut shows the inside'() {
+    // The inner wall carries the largest stress: its yellow is hidden until the body is cut.
+    const page = await open('full', 'field=stress&frame=10');
+    const whole = await pixels(page);
+    await page.key('y');
+    const cut = await pixels(page);
+    assert.ok(whole.yellow < 0.001 * whole.total, `${whole.yellow} yellow pixels before the cut`);
+    assert.ok(cut.yellow > 0.01 * cut.total, `${cut.yellow} yellow pixels after the cut`);
+    await page.key('f');
+    assert.notEqual((await pixels(page)).hash, cut.hash);
+    await page.key('y');
+    assert.equal((await pixels(page)).hash, whole.hash);
+    await finish(page);
+  },
+
+  async 'a section without values inside is filled'() {
+    const page = await open('bare', 'frame=10');
+    const whole = await pixels(page);
+    await page.key('y');
+    const cut = await pixels(page);
+    assert.ok(whole.gray < 0.001 * whole.total, `${whole.gray} gray pixels before the cut`);
+    assert.ok(cut.gray > 0.01 * cut.total, `${cut.gray} gray pixels after the cut`);
+    await finish(page);
+  },
+
+  async 'keys play, step, color, and turn'() {
+    const page = await open('full', 'frame=first');
+    const state = (what) => page.evaluate(`window.isochorViewer.state.${what}`);
+    await page.key('ArrowRight');
+    assert.equal(await state('frame'), 1);
+    await page.key('End');
+    assert.equal(await state('frame'), 20);
+    await page.key('c');
+    assert.equal(await state('field.name'), 'stress');
+    await page.key('g');
+    await page.key('e');
+    assert.deepEqual([await state('ghost'), await state('edges')], [true, true]);
+    const before = await pixels(page);
+    await page.key('ArrowLeft', 8);
+    assert.notEqual((await pixels(page)).hash, before.hash);
+    assert.equal(await state('frame'), 20);
+    await page.key(' ');
+    await page.waitFor('window.isochorViewer.state.frame > 2 && window.isochorViewer.state.frame < 20');
+    await page.key(' ');
+    assert.equal(await state('playing'), false);
+    await finish(page);
+  },
+
+  async 'values that are not finite are gray and said'() {
+    const page = await open('broken', 'field=stress&frame=10');
+    assert.match(await page.evaluate(`document.querySelector('.legend').textContent`), /not finite/);
+    assert.match(await page.evaluate(`document.querySelector('.notes').textContent`), /Frame 6: 1 of \d+ positions are not finite/);
+    assert.match(await page.evaluate(`document.querySelector('.plots').textContent`), /No finite value: Nothing/);
+    assert.equal(await page.evaluate(`document.querySelector('h1').textContent`), '</script><b>Broken & "quoted"');
+    const drawn = await pixels(page);
+    assert.ok(drawn.gray > 0.002 * drawn.total, `${drawn.gray} gray pixels`);
+    await finish(page);
+    const lost = await open('broken', 'field=J');
+    assert.match(await lost.evaluate(`document.querySelector('.legend').textContent`), /no finite value/);
+    await finish(lost);
+  },
+
+  async 'one frame, no field, small window, dark'() {
+    const single = await open('single', '', { width: 390, height: 800, dark: true });
+    assert.equal(await single.evaluate(`document.querySelector('.transport').hidden`), true);
+    assert.ok(await single.evaluate('document.documentElement.scrollWidth <= window.innerWidth'), 'the page is wider than the window');
+    assert.ok((await pixels(single)).covered > 0);
+    await finish(single);
+    const bare = await open('bare', 'field=nonsense');
+    assert.match(await bare.evaluate(`document.querySelector('.notes').textContent`), /no field "nonsense"/);
+    await finish(bare);
+  },
+
+  async 'a picture is not blank'() {
+    const out = join(folder, 'shot.png');
+    const run = spawnSync(process.execPath, [join(viewer, 'shoot.mjs'), files.full, out, '--size', '800x500', 'field=stress', 'frame=t=1', 'cut=y'], { encoding: 'utf8' });
+    assert.equal(run.status, 0, run.stderr);
+    assert.equal(run.stderr, '');
+    const page = await open('single');
+    const { width, colors } = await page.evaluate(`(async () => {
+      const blob = await (await fetch('data:image/png;base64,${readFileSync(out).toString('base64')}')).blob();
+      const image = await createImageBitmap(blob);
+      const copy = new OffscreenCanvas(image.width, image.height).getContext('2d');
+      copy.drawImage(image, 0, 0);
+      const { data } = copy.getImageData(0, 0, image.width, image.height);
+      return { width: image.width, colors: new Set(new Uint32Array(data.buffer)).size };
+    })()`);
+    assert.equal(width, 800);
+    assert.ok(colors > 1000, `${colors} colors`);
+    await page.close();
+  },
+};
+
+let failures = 0;
+try {
+  for (const [name, test] of Object.entries(tests)) {
+    try {
+      await test();
+      console.log(`ok      ${name}`);
+    } catch (error) {
+      ++failures;
+      console.log(`FAILED  ${name}\n${error.stack}`);
+    }
+  }
+} finally {
+  await browser.close();
+  rmSync(folder, { recursive: true, force: true });
+}
+process.exit(failures === 0 ? 0 : 1);

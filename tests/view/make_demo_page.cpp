@@ -1,0 +1,260 @@
+// Writes a results page of a pneumatic finger whose motion is known in closed form: a thick capsule that
+// widens without changing its volume and bends. It is what the browser test looks at. Usage: make_demo_page
+// OUT.html [broken|single|bare]
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "page_surface.h"
+#include "results_page.h"
+
+namespace {
+
+using isochor::Index;
+using isochor::Mesh;
+using isochor::Vec3;
+
+constexpr double inner = 0.010, outer = 0.016;  // radii of the wall [m]
+constexpr double straight = 0.075;              // length of the straight part [m]
+constexpr int layers = 3;                       // cells through the wall
+constexpr int across = 10, along = 16;          // cells over an end, and along the straight part
+
+double norm(const Vec3& v) {
+  return std::sqrt(dot(v, v));
+}
+
+// The surface of a box with square cells, blown up to a capsule: triangles of nearly equal size and no poles.
+// Each point is a direction on the unit sphere and its share of the straight part.
+struct CapsulePoint {
+  Vec3 direction;
+  double share;
+};
+
+void capsule_surface(std::vector<CapsulePoint>& points, std::vector<Index>& triangles) {
+  constexpr std::array<int, 3> cells = {across, across, across + along};
+  const auto point = [&](const std::array<int, 3>& at) {
+    const int raised = std::clamp(at[2] - across / 2, 0, along);
+    Vec3 p;
+    for (int k = 0; k < 3; ++k) {
+      const int on_cube = at[static_cast<std::size_t>(k)] - (k == 2 ? raised : 0);
+      p[k] = std::tan((2.0 * on_cube / across - 1) * std::numbers::pi / 4);
+    }
+    return CapsulePoint{(1 / norm(p)) * p, static_cast<double>(raised) / along};
+  };
+  std::map<std::array<int, 3>, Index> known;
+  const auto vertex = [&](const std::array<int, 3>& at) {
+    const auto [entry, fresh] = known.try_emplace(at, static_cast<Index>(points.size()));
+    if (fresh) points.push_back(point(at));
+    return entry->second;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+    for (int side = 0; side < 2; ++side) {
+      for (int i = 0; i < cells[u]; ++i) {
+        for (int j = 0; j < cells[v]; ++j) {
+          const auto at = [&](int di, int dj) {
+            std::array<int, 3> a{};
+            a[axis] = side * cells[axis];
+            a[u] = i + di;
+            a[v] = j + dj;
+            return vertex(a);
+          };
+          std::array<Index, 4> q = {at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
+          if (side == 0) std::swap(q[1], q[3]);
+          triangles.insert(triangles.end(), {q[0], q[1], q[2], q[0], q[2], q[3]});
+        }
+      }
+    }
+  }
+}
+
+// Prisms between two copies of the sphere, cut by the order of their vertex numbers so that neighbors agree.
+Mesh capsule() {
+  std::vector<CapsulePoint> surface;
+  std::vector<Index> triangles;
+  capsule_surface(surface, triangles);
+  const auto count = static_cast<Index>(surface.size());
+  Mesh mesh;
+  for (int layer = 0; layer <= layers; ++layer) {
+    const double r = inner + (outer - inner) * layer / layers;
+    for (const CapsulePoint& p : surface)
+      mesh.nodes.push_back(r * p.direction + Vec3{0, 0, straight * p.share});
+  }
+  for (int layer = 0; layer < layers; ++layer) {
+    for (std::size_t t = 0; t < triangles.size(); t += 3) {
+      std::array<Index, 3> s = {triangles[t], triangles[t + 1], triangles[t + 2]};
+      std::sort(s.begin(), s.end());
+      const auto at = [&](std::size_t k, int up) { return s[k] + (layer + up) * count; };
+      for (std::array<Index, 4> tet : {std::array{at(0, 0), at(1, 0), at(2, 0), at(2, 1)},
+                                       std::array{at(0, 0), at(1, 0), at(1, 1), at(2, 1)},
+                                       std::array{at(0, 0), at(0, 1), at(1, 1), at(2, 1)}}) {
+        const auto node = [&](std::size_t k) { return mesh.nodes[static_cast<std::size_t>(tet[k])]; };
+        if (dot(cross(node(1) - node(0), node(2) - node(0)), node(3) - node(0)) < 0)
+          std::swap(tet[0], tet[1]);
+        mesh.cells.insert(mesh.cells.end(), tet.begin(), tet.end());
+      }
+    }
+  }
+  return mesh;
+}
+
+// Widens each cross-section so that the area of the wall stays, then bends the axis to an arc.
+Vec3 moved(const Vec3& rest, double load) {
+  const double grow = 0.75 * inner * inner * load;
+  const double axial = std::clamp(rest.z, 0.0, straight);
+  const double share = std::sin(std::numbers::pi * std::clamp((rest.z + 0.01) / (straight + 0.02), 0.0, 1.0));
+  const double r = std::hypot(rest.x, rest.y);
+  const double widened = r > 0 ? std::sqrt(r * r + grow * share) / r : 1;
+  const Vec3 p = {rest.x * (r > 0.25 * inner ? widened : 1), rest.y * (r > 0.25 * inner ? widened : 1),
+                  rest.z};
+  const double curvature = 16.0 * load;
+  if (curvature < 1e-9) return p;
+  const double angle = curvature * axial;
+  const double beyond = p.z - axial;
+  const double reach = 1 / curvature - p.x;
+  return {1 / curvature - reach * std::cos(angle) + beyond * std::sin(angle), p.y,
+          reach * std::sin(angle) + beyond * std::cos(angle)};
+}
+
+struct Values {
+  double pressure, stress, volume_ratio;
+};
+
+Values values_at(const Vec3& rest, double load) {
+  const double r = norm({rest.x, rest.y, std::min(rest.z, 0.0) + std::max(rest.z - straight, 0.0)});
+  const double depth = (r - inner) / (outer - inner);
+  const double side = rest.x / outer;
+  return {load * (26e3 * (1 - depth) - 9e3 * side * depth),
+          load * 68e3 * (1.15 - 0.85 * depth) * (1 + 0.5 * side),
+          1 + load * 2.2e-4 * std::sin(9 * depth + 40 * rest.z)};
+}
+
+isochor::PageReport report(int frames) {
+  isochor::PageReport out;
+  out.title = "Pneumatic finger";
+  out.subtitle =
+      "A thick capsule with one air chamber, inflated to 40 kPa and released. The motion is prescribed "
+      "in closed form.";
+  out.footer = "Isochor demo page";
+  out.run = {{"Material", "Neo-Hookean, μ = 60 kPa, incompressible"},
+             {"Elements", "Tet4, pressure at nodes"},
+             {"Step", "10 ms"},
+             {"Solver tolerance", "1e-8 of the largest force"}};
+  isochor::PageSeries pressure{"Chamber", "Pressure", "Pa"}, volume{"Chamber", "Volume", "m³"};
+  isochor::PageSeries elastic{"Energy", "Elastic", "J"}, kinetic{"Energy", "Kinetic", "J"};
+  isochor::PageSeries work{"Energy", "Work of the pump", "J"};
+  isochor::PageSeries error{"Volume error", "Largest |J − 1|", ""};
+  isochor::PageSeries iterations{"Solver", "Newton iterations", ""};
+  isochor::PageSeries residual{"Residual", "Force", "N", {}, {}, true},
+      gap{"Residual", "Volume", "N", {}, {}, true};
+  const int steps = std::max(1, 6 * (frames - 1));
+  for (int i = 0; i <= steps; ++i) {
+    const double s = static_cast<double>(i) / steps, t = 2 * s;
+    const double load = std::pow(std::sin(std::numbers::pi * s), 2);
+    const auto add = [&](isochor::PageSeries& series, double y) {
+      series.x.push_back(t);
+      series.y.push_back(y);
+    };
+    add(pressure, 40e3 * load);
+    add(volume, 2.35e-5 * (1 + 0.75 * load));
+    add(elastic, 0.21 * load * load);
+    add(kinetic, 0.012 * std::pow(std::sin(2 * std::numbers::pi * s), 2));
+    add(work, 0.21 * load * load + 0.012 * std::pow(std::sin(2 * std::numbers::pi * s), 2) + 0.004 * s);
+    add(error, 2.2e-4 * load);
+    add(iterations, 3 + (i % 5 == 0 ? 1 : 0) + std::round(3 * load));
+    add(residual, 1e-7 * std::exp(-2 * load) * (1 + 0.6 * std::sin(2.3 * i)));
+    add(gap, 3e-10 * (1.2 + std::cos(1.7 * i)));
+  }
+  out.series = {pressure, volume, elastic, kinetic, work, error, iterations, residual, gap};
+  out.summary = {{"Largest tip displacement", "71.4 mm at t = 1 s"},
+                 {"Largest volume error |J − 1|", "2.2 × 10⁻⁴"},
+                 {"Chamber volume", "23.5 mL to 41.1 mL"},
+                 {"Newton iterations a step", "4.7 (mean), 7 (most)"},
+                 {"Energy balance", "1.9 % of the work of the pump"}};
+  return out;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: make_demo_page OUT.html [broken|single|bare]\n");
+    return 2;
+  }
+  const std::string_view variant = argc > 2 ? argv[2] : "";
+  const int frames = variant == "single" ? 1 : 21;
+  const bool bare = variant == "bare", broken = variant == "broken";
+
+  isochor::PageScene scene;
+  const Mesh mesh = capsule();
+  const std::vector<Index> nodes = add_page_mesh(scene, mesh, {"Finger", ""}, {.cells = !bare});
+  if (!bare) {
+    scene.fields = {{"pressure", "Pressure", "Pa", false, true},
+                    {"stress", "Von Mises stress", "Pa"},
+                    {"J", "Volume ratio J", "", false, true, 1},
+                    {"region", "Region", "", true, false, 0, {"Root", "Shaft", "Tip"}}};
+    scene.lines = {{"Tendon", "#d8a11d"}};
+    scene.probes = {"Tip", "Root"};
+  }
+  auto recorder = isochor::ResultsRecorder::start(scene);
+  if (!recorder) {
+    std::fprintf(stderr, "%s\n", recorder.error().c_str());
+    return 1;
+  }
+  for (int i = 0; i < frames; ++i) {
+    isochor::PageFrame frame;
+    frame.time = frames > 1 ? 2.0 * i / (frames - 1) : 1.0;
+    const double load = frames > 1 ? std::pow(std::sin(0.5 * std::numbers::pi * frame.time), 2) : 1.0;
+    frame.label = frame.time < 1 ? "inflating" : "releasing";
+    frame.fields.resize(scene.fields.size());
+    for (const Vec3& rest : scene.rest) {
+      frame.positions.push_back(moved(rest, load));
+      if (bare) continue;
+      const Values v = values_at(rest, load);
+      frame.fields[0].push_back(v.pressure);
+      frame.fields[1].push_back(broken && rest.z > 0.05 ? std::numeric_limits<double>::quiet_NaN()
+                                                        : v.stress);
+      frame.fields[2].push_back(broken ? std::numeric_limits<double>::infinity() : v.volume_ratio);
+    }
+    if (!bare) {
+      for (std::size_t t = 0; t < scene.triangles.size(); t += 3) {
+        const double z = scene.rest[static_cast<std::size_t>(scene.triangles[t])].z;
+        frame.fields[3].push_back(z < 0.01 ? 0 : z < 0.06 ? 1 : 2);
+      }
+      frame.lines.resize(1);
+      for (int k = 0; k <= 30; ++k) frame.lines[0].push_back(moved({0.0135, 0, straight * k / 30.0}, load));
+      frame.probes = {moved({0, 0, straight + outer}, load), moved({0, 0, -outer}, load)};
+      for (int k = 0; k < 6; ++k) {
+        const double a = k * std::numbers::pi / 3;
+        frame.contacts.push_back(
+            moved({0.9 * outer * std::cos(a), 0.9 * outer * std::sin(a), -0.0072}, load));
+      }
+      if (broken && i == 5) frame.positions[7].x = std::numeric_limits<double>::quiet_NaN();
+    }
+    if (auto ok = recorder.value().append(frame); !ok) {
+      std::fprintf(stderr, "%s\n", ok.error().c_str());
+      return 1;
+    }
+  }
+  isochor::PageReport words = bare ? isochor::PageReport{} : report(frames);
+  if (broken) {
+    words.title = "</script><b>Broken & \"quoted\"";
+    words.series[0].y.assign(words.series[0].y.size(), std::numeric_limits<double>::quiet_NaN());
+    words.series.push_back({"Empty", "Nothing", "m"});
+  }
+  if (auto ok = recorder.value().write(argv[1], words); !ok) {
+    std::fprintf(stderr, "%s\n", ok.error().c_str());
+    return 1;
+  }
+  std::printf("%zu vertices, %zu triangles, %zu tets, %zu frames, %zu bytes of data\n", scene.rest.size(),
+              scene.triangles.size() / 3, scene.cells.size() / 4, recorder.value().frame_count(),
+              recorder.value().stored_bytes());
+  return 0;
+}

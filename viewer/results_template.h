@@ -1,0 +1,11 @@
+// The page without its data, put into the library by cmake/Viewer.cmake.
+#pragma once
+
+#include <string>
+
+namespace isochor::page {
+
+// Empty when node and npm were missing at build time.
+const std::string& results_template();
+
+}  // namespace isochor::page

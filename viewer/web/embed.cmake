@@ -1,0 +1,59 @@
+# Runs at build time (cmake -P): bundles the page and writes it as a C++ source. A machine where npm cannot
+# install still gets a library; it says that the page is missing.
+# In: SOURCE_DIR, WORK_DIR, OUTPUT, NPM, NODE
+
+function(write_template_source content)
+  file(WRITE "${OUTPUT}.new" "#include \"results_template.h\"\n\nnamespace isochor::page {\n\n\
+const std::string& results_template() {\n  static const std::string html = []() {\n    std::string out;\n\
+${content}    return out;\n  }();\n  return html;\n}\n\n}  // namespace isochor::page\n")
+  file(RENAME "${OUTPUT}.new" "${OUTPUT}")
+endfunction()
+
+set(problem "node or npm was not found")
+if(NPM AND NODE)
+  set(problem "")
+  file(COPY "${SOURCE_DIR}/package.json" "${SOURCE_DIR}/package-lock.json" "${SOURCE_DIR}/build.mjs"
+       "${SOURCE_DIR}/src" DESTINATION "${WORK_DIR}")
+  # node_modules is kept until the lock file changes.
+  file(SHA256 "${SOURCE_DIR}/package-lock.json" lock)
+  set(stamp "${WORK_DIR}/node_modules/.isochor-${lock}")
+  if(NOT EXISTS "${stamp}")
+    execute_process(COMMAND "${NPM}" ci --ignore-scripts --no-audit --no-fund --loglevel=error
+                    WORKING_DIRECTORY "${WORK_DIR}" RESULT_VARIABLE status OUTPUT_VARIABLE log ERROR_VARIABLE log)
+    if(status EQUAL 0)
+      file(WRITE "${stamp}" "")
+    else()
+      set(problem "npm ci failed:\n${log}")
+    endif()
+  endif()
+  if(NOT problem)
+    execute_process(COMMAND "${NODE}" build.mjs "${WORK_DIR}/template.html"
+                    WORKING_DIRECTORY "${WORK_DIR}" RESULT_VARIABLE status OUTPUT_VARIABLE log ERROR_VARIABLE log)
+    if(NOT status EQUAL 0)
+      message(FATAL_ERROR "The results page does not bundle:\n${log}")
+    endif()
+  endif()
+endif()
+
+if(problem)
+  message(WARNING "The results page is left out of this build: ${problem}")
+  write_template_source("")
+  file(WRITE "${WORK_DIR}/missing.txt" "${problem}\n")  # makes the next configure try again
+  return()
+endif()
+file(REMOVE "${WORK_DIR}/missing.txt")
+
+# Read as hex: text reading would trip over brackets and semicolons. Chunks stay below the length of literal
+# that every compiler must accept.
+file(READ "${WORK_DIR}/template.html" bytes HEX)
+string(REGEX REPLACE "([0-9a-f][0-9a-f])" "\\\\x\\1" bytes "${bytes}")
+set(chunks "")
+set(at 0)
+set(step 16000)  # a multiple of the four characters of one escaped byte
+string(LENGTH "${bytes}" length)
+while(at LESS length)
+  string(SUBSTRING "${bytes}" ${at} ${step} chunk)
+  string(APPEND chunks "    out += \"${chunk}\";\n")
+  math(EXPR at "${at} + ${step}")
+endwhile()
+write_template_source("${chunks}")

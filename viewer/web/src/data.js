@@ -1,0 +1,193 @@
+// Reads what viewer/results_page.cpp wrote: a JSON head and one compressed block for the rest state and
+// for each frame. Frames are unpacked when first shown, so a long run opens as fast as a short one.
+
+const INVALID_CODE = 65535; // a value that was NaN or infinite
+const FIELD_LEVELS = 4095;
+
+/** Base64 of a zlib stream to its bytes. */
+async function inflate(base64) {
+  const packed = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** Walks the bytes of one block in the order the writer packed them. */
+class BlockReader {
+  constructor(bytes) {
+    this.bytes = bytes;
+    this.at = 0;
+  }
+
+  take(length) {
+    const from = this.at;
+    this.at += length;
+    if (this.at > this.bytes.length) throw new Error('the data of this page is cut short');
+    return this.bytes.subarray(from, this.at);
+  }
+
+  // Integers come as differences to their predecessor with their bytes in separate planes: that is what
+  // makes neighboring vertices compress well.
+  integers(count, ArrayType) {
+    const width = ArrayType.BYTES_PER_ELEMENT;
+    const planes = this.take(count * width);
+    const out = new ArrayType(count);
+    let value = 0;
+    for (let i = 0; i < count; ++i) {
+      let step = 0;
+      for (let k = width - 1; k >= 0; --k) step = (step << 8) | planes[k * count + i];
+      value = (value + step) | 0;
+      out[i] = value;
+    }
+    return out;
+  }
+
+  u16(count) { return this.integers(count, Uint16Array); }
+  u32(count) { return this.integers(count, Uint32Array); }
+
+  floats(count) {
+    return new Float32Array(this.take(count * 4).slice().buffer);
+  }
+
+  // A count and that many points.
+  points() {
+    const count = new DataView(this.take(4).slice().buffer).getUint32(0, true);
+    return this.floats(count * 3);
+  }
+}
+
+/** Everything the page shows, in world coordinates scaled to a sphere of radius one. */
+export class RunData {
+  constructor(head, blocks) {
+    this.head = head;
+    this.blocks = blocks;
+    this.frames = new Array(head.frames.length).fill(null);
+    const { low, high } = head.box;
+    this.center = low.map((v, i) => 0.5 * (v + high[i]));
+    const diagonal = Math.hypot(...low.map((v, i) => high[i] - v));
+    this.scale = diagonal > 0 ? 2 / diagonal : 1;
+  }
+
+  static async open(doc) {
+    const element = doc.getElementById('isochor-head');
+    if (!element) throw new Error('this page holds no results');
+    const head = JSON.parse(element.textContent);
+    if (head.format !== 1) throw new Error(`the data of this page has format ${head.format}, expected 1`);
+    const run = new RunData(head, [...doc.querySelectorAll('script.isochor-block')]);
+    await run.readStatic();
+    return run;
+  }
+
+  async bytesOf(index) {
+    const element = this.blocks[index];
+    if (!element) throw new Error(`block ${index} of this page is missing`);
+    const bytes = await inflate(element.textContent.trim());
+    element.remove(); // the text is the larger half of the memory
+    return bytes;
+  }
+
+  async readStatic() {
+    const { head } = this;
+    const reader = new BlockReader(await this.bytesOf(0));
+    this.rest = this.toWorld(this.codes(reader), head.restBox);
+    this.triangles = reader.u32(head.triangles * 3);
+    this.trianglePart = reader.u16(head.triangles);
+    this.edgeMask = reader.u16(head.triangles);
+    this.cells = reader.u32(head.cells * 4);
+  }
+
+  codes(reader) {
+    const n = this.head.vertices;
+    return [reader.u16(n), reader.u16(n), reader.u16(n)];
+  }
+
+  /** Quantized coordinates of one box to scene coordinates, xyz a vertex. */
+  toWorld(codes, box) {
+    const n = codes[0].length;
+    const out = new Float32Array(n * 3);
+    for (let axis = 0; axis < 3; ++axis) {
+      const step = ((box[axis + 3] - box[axis]) / 65535) * this.scale;
+      const origin = (box[axis] - this.center[axis]) * this.scale;
+      const code = codes[axis];
+      for (let i = 0; i < n; ++i) out[3 * i + axis] = origin + code[i] * step;
+    }
+    return out;
+  }
+
+  worldPoints(points) {
+    return points.map((v, i) => (v - this.center[i % 3]) * this.scale);
+  }
+
+  get frameCount() { return this.frames.length; }
+
+  /** One frame, unpacked on first use. */
+  frame(index) {
+    this.frames[index] ??= this.readFrame(index);
+    return this.frames[index];
+  }
+
+  async readFrame(index) {
+    const { head } = this;
+    const info = head.frames[index];
+    const reader = new BlockReader(await this.bytesOf(index + 1));
+    const codes = this.codes(reader);
+    const fields = head.fields.map((f) => reader.u16(f.place === 'triangle' ? head.triangles : head.vertices));
+    const lines = head.lines.map(() => this.worldPoints(reader.points()));
+    const probes = this.worldPoints(reader.points());
+    const contacts = this.worldPoints(reader.points());
+    return { index, info, codes, fields, lines, probes, contacts };
+  }
+
+  positions(frame) { return this.toWorld(frame.codes, frame.info.box); }
+
+  /** Values of a field in one frame (physical units; NaN where the run had none). */
+  values(frame, field) {
+    if (field.kind === 'solid') return null;
+    if (field.kind === 'displacement') {
+      const now = this.positions(frame);
+      const out = new Float32Array(this.head.vertices);
+      for (let i = 0; i < out.length; ++i) {
+        out[i] = Math.hypot(now[3 * i] - this.rest[3 * i], now[3 * i + 1] - this.rest[3 * i + 1],
+          now[3 * i + 2] - this.rest[3 * i + 2]) / this.scale;
+      }
+      return out;
+    }
+    const [low, high] = frame.info.ranges[field.index];
+    const codes = frame.fields[field.index];
+    const out = new Float32Array(codes.length);
+    const step = (high - low) / FIELD_LEVELS;
+    for (let i = 0; i < codes.length; ++i) out[i] = codes[i] === INVALID_CODE ? NaN : low + codes[i] * step;
+    return out;
+  }
+
+  /** The fields of the run and the two that every run has. */
+  fieldList() {
+    const given = this.head.fields.map((f, index) => ({ ...f, kind: 'given', index }));
+    const names = new Set(given.map((f) => f.name));
+    const list = [...given];
+    if (!names.has('displacement') && this.frameCount > 0) {
+      list.push({ name: 'displacement', label: 'Displacement', unit: 'm', kind: 'displacement', place: 'vertex',
+        diverging: false, center: 0, categories: [] });
+    }
+    list.push({ name: 'solid', label: 'None (solid color)', unit: '', kind: 'solid', place: 'vertex',
+      categories: [] });
+    return list;
+  }
+
+  /** Lowest and highest finite value of a field in one frame; null when there is none. */
+  frameRange(field, index) {
+    const info = this.head.frames[index];
+    if (field.kind === 'displacement') return [0, info.displacement];
+    const range = info.ranges[field.index];
+    return range[0] === null ? null : [range[0], range[1]];
+  }
+
+  /** The same over the whole run. */
+  runRange(field) {
+    let out = null;
+    for (let i = 0; i < this.frameCount; ++i) {
+      const range = this.frameRange(field, i);
+      if (range) out = out ? [Math.min(out[0], range[0]), Math.max(out[1], range[1])] : range;
+    }
+    return out;
+  }
+}

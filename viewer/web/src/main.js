@@ -1,0 +1,244 @@
+// Opens the page: reads the data, builds the views and joins them through one state.
+import 'uplot/dist/uPlot.min.css';
+import './style.css';
+import { Controls } from './controls.js';
+import { RunData } from './data.js';
+import { el } from './dom.js';
+import { buildPage } from './layout.js';
+import { drawLegend } from './legend.js';
+import { significant, unitScale } from './numbers.js';
+import { frameNumber, nearestFrame, readOptions } from './options.js';
+import { Plots } from './plots.js';
+import { Stage } from './stage.js';
+
+class Viewer {
+  constructor(run, options) {
+    this.run = run;
+    this.options = options;
+    this.fields = run.fieldList();
+    const wanted = this.fields.find((f) => f.name === options.field);
+    this.state = {
+      frame: run.frameCount > 0 ? frameNumber(options.frame, run.head.frames) : -1,
+      field: wanted ?? this.fields[0],
+      rangeMode: options.range ? 'custom' : options.perFrame ? 'frame' : 'run',
+      custom: options.range,
+      ghost: options.ghost,
+      edges: options.edges,
+      cut: options.cut ?? { axis: null, at: 0.5, flip: null },
+      playing: false,
+      speed: 1,
+    };
+    this.notes = [...run.head.notes];
+    if (options.field && !wanted) this.notes.push(`This run has no field "${options.field}"; shown is "${this.state.field.name}".`);
+  }
+
+  async start() {
+    const { run, options } = this;
+    this.setTheme(options.theme);
+    this.page = buildPage(run.head);
+    document.getElementById('app').append(this.page.root);
+    document.documentElement.classList.toggle('shot', options.shot);
+    this.page.root.classList.toggle('unlabeled', !options.labels);
+    this.page.root.classList.toggle('no-legend', !options.legend);
+    try {
+      if (run.head.triangles === 0 && run.head.lines.length === 0) throw new Error('this run has no surface');
+      this.stage = new Stage(run, this.page.stage);
+    } catch (error) {
+      this.page.stage.replaceChildren(el('p', { class: 'empty' }, `No 3D view: ${error.message}.`));
+      this.notes.push(`No 3D view: ${error.message}.`);
+    }
+    this.page.notes.append(...this.notes.map((text) => el('p', {}, text)));
+    if (!options.shot) {
+      this.plots = new Plots(run, this.page.plots, (x) => this.go(nearestFrame(x, run.head.frames)));
+      this.controls = new Controls(this);
+      const dark = window.matchMedia('(prefers-color-scheme: dark)');
+      dark.addEventListener('change', () => this.themeChanged());
+      this.page.theme.addEventListener('click', () => {
+        const isDark = getComputedStyle(document.documentElement).getPropertyValue('--dark').trim() === '1';
+        this.setTheme(isDark ? 'light' : 'dark');
+        this.themeChanged();
+      });
+    }
+    this.themeChanged(false);
+    await this.showFrame();
+    if (this.stage) {
+      this.stage.fitPoints = await this.pointsToFit();
+      this.stage.look(options.view, options.zoom);
+      this.openCut();
+      this.showDisplay();
+      this.stage.draw();
+    }
+  }
+
+  /** The camera is set once so that the whole motion stays in view. */
+  async pointsToFit() {
+    const { run } = this;
+    const out = [run.rest];
+    if (run.frameCount === 0) return out;
+    let widest = 0;
+    run.head.frames.forEach((f, i) => { if (f.displacement > run.head.frames[widest].displacement) widest = i; });
+    for (const i of new Set([widest, this.state.frame])) {
+      const frame = await run.frame(i);
+      out.push(run.positions(frame), ...frame.lines, frame.probes);
+    }
+    return out;
+  }
+
+  setTheme(theme) {
+    if (theme) document.documentElement.dataset.theme = theme;
+  }
+
+  themeChanged(replot = true) {
+    if (this.stage) {
+      const value = getComputedStyle(document.documentElement).getPropertyValue('--ghost').trim().split(' ').map(Number);
+      this.stage.body.ghostColor.set(...value.map((v) => v / 255));
+      this.stage.invalidate();
+    }
+    if (replot) this.plots?.build();
+  }
+
+  async go(frame) {
+    if (this.run.frameCount === 0) return;
+    this.state.frame = Math.min(this.run.frameCount - 1, Math.max(0, frame));
+    await this.showFrame();
+  }
+
+  /** Unpacks the current frame and shows it; a newer request wins over one still unpacking. */
+  async showFrame() {
+    const { run, state } = this;
+    const wanted = state.frame;
+    const frame = wanted >= 0 ? await run.frame(wanted) : null;
+    if (wanted !== state.frame) return;
+    this.frame = frame;
+    if (this.stage) {
+      this.stage.body.setShape(frame ? run.positions(frame) : run.rest);
+      if (frame) this.stage.overlays.setFrame(frame);
+    }
+    this.showField();
+    const info = frame?.info;
+    if (info) {
+      const scale = unitScale(Math.max(...run.head.frames.map((f) => Math.abs(f.time))), run.head.x.unit);
+      this.page.stamp.replaceChildren(
+        el('b', {}, `${run.head.x.symbol} = ${significant(info.time * scale.factor, 4)} ${scale.unit}`),
+        info.label ? el('span', {}, info.label) : '');
+      this.plots?.setTime(info.time);
+    }
+    this.controls?.frameShown();
+  }
+
+  currentRange() {
+    const { run, state } = this;
+    const { field } = state;
+    if (field.kind === 'solid' || state.frame < 0) return null;
+    if (state.rangeMode === 'custom' && state.custom) return state.custom;
+    let range = state.rangeMode === 'frame' ? run.frameRange(field, state.frame) : run.runRange(field);
+    if (!range) return null;
+    if (field.diverging) {
+      // Both sides get the same length of color, or the neutral color would not mean the center.
+      const reach = Math.max(Math.abs(range[0] - field.center), Math.abs(range[1] - field.center));
+      range = [field.center - reach, field.center + reach];
+    }
+    if (!(range[1] > range[0])) {
+      const pad = Math.abs(range[0]) * 1e-3 || 1;
+      range = [range[0] - pad, range[1] + pad];
+    }
+    return range;
+  }
+
+  showField() {
+    const { run, state, frame } = this;
+    const { field } = state;
+    const range = this.currentRange();
+    if (this.stage) {
+      const values = frame && field.kind !== 'solid' ? run.values(frame, field) : null;
+      this.stage.body.setValues(field, values);
+      if (range) this.stage.body.setRange(...range);
+    }
+    if (this.options.legend) {
+      drawLegend(this.page.legend, {
+        field, range, parts: run.head.parts, perFrame: state.rangeMode === 'frame',
+        invalid: field.kind === 'given' && frame ? frame.info.ranges[field.index][2] : 0,
+      });
+    }
+    this.showDisplay();
+  }
+
+  /** Ghost, edges and cut. */
+  showDisplay() {
+    const { state, stage } = this;
+    if (!stage) return;
+    stage.body.ghost.visible = state.ghost;
+    stage.body.uniforms.edges.value = state.edges ? 0.75 : 0;
+    stage.body.setCut(this.cutPlane());
+    stage.invalidate();
+  }
+
+  /** Unless asked for a side, the half between the cut and the camera goes away. */
+  openCut() {
+    const { cut } = this.state;
+    if (!cut.axis || cut.flip !== null || !this.stage) return;
+    cut.flip = this.stage.toCamera('xyz'.indexOf(cut.axis)) < 0;
+  }
+
+  cutPlane() {
+    const { run, state: { cut } } = this;
+    if (!cut.axis) return null;
+    const axis = 'xyz'.indexOf(cut.axis);
+    const { low, high } = run.head.box;
+    // Just inside the extent, so that the ends of the slider still show something.
+    const t = Math.min(0.9995, Math.max(0.0005, cut.at));
+    const at = (low[axis] + t * (high[axis] - low[axis]) - run.center[axis]) * run.scale;
+    const plane = [0, 0, 0, 0];
+    plane[axis] = cut.flip ? -1 : 1;
+    plane[3] = cut.flip ? at : -at;
+    return plane;
+  }
+
+  /** Where the cut is, in the unit of the run. */
+  cutText() {
+    const { run, state: { cut } } = this;
+    const axis = 'xyz'.indexOf(cut.axis);
+    const { low, high } = run.head.box;
+    const scale = unitScale(Math.max(...low.map((v, i) => high[i] - v)), 'm');
+    return `${cut.axis} = ${significant((low[axis] + cut.at * (high[axis] - low[axis])) * scale.factor, 3)} ${scale.unit}`;
+  }
+
+  play(on) {
+    const { state, run } = this;
+    state.playing = on && run.frameCount > 1;
+    this.controls?.playingChanged();
+    if (!state.playing) return;
+    if (state.frame === run.frameCount - 1) this.go(0);
+    // Short runs are stretched to about four seconds, long ones run at thirty frames a second.
+    const rate = Math.min(30, Math.max(5, run.frameCount / 4)) * state.speed;
+    let last = performance.now();
+    const step = async (now) => {
+      if (!state.playing || this.playToken !== token) return;
+      if (now - last >= 1000 / rate - 2) {
+        last = now;
+        await this.go((state.frame + 1) % run.frameCount);
+      }
+      requestAnimationFrame(step);
+    };
+    const token = (this.playToken = {});
+    requestAnimationFrame(step);
+  }
+}
+
+async function open() {
+  try {
+    const run = await RunData.open(document);
+    document.title = run.head.title || 'Isochor results';
+    const viewer = new Viewer(run, readOptions(window.location));
+    await viewer.start();
+    window.isochorViewer = viewer; // for tests and for the curious
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+  } catch (error) {
+    document.getElementById('app').append(el('p', { class: 'empty' }, `These results cannot be shown: ${error.message}.`));
+    window.isochorError = String(error.message);
+    console.error(error);
+  }
+  window.isochorReady = true;
+}
+
+open();

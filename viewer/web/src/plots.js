@@ -1,0 +1,178 @@
+// Time series, a chart a group (two units at most), with a marker at the time of the frame shown.
+import uPlot from 'uplot';
+import { el } from './dom.js';
+import { significant, unitScale } from './numbers.js';
+
+const LIGHT = ['#1f6fb5', '#d1571b', '#2a8a57', '#a4388f', '#8a6d00', '#5b55c9', '#c22f4b', '#45707f'];
+const DARK = ['#6db3f2', '#f59a62', '#6ccb97', '#e08bd0', '#dcc04f', '#a9a4ff', '#f5839a', '#93bccb'];
+const HEIGHT = 210;
+
+/** Series of one group, cut into charts of at most two units each. */
+function charts(series) {
+  const groups = new Map();
+  for (const s of series) {
+    if (!groups.has(s.group)) groups.set(s.group, []);
+    groups.get(s.group).push(s);
+  }
+  const out = [];
+  for (const [name, members] of groups) {
+    const units = [...new Set(members.map((s) => s.unit))];
+    for (let i = 0; i < units.length; i += 2) {
+      const pair = units.slice(i, i + 2);
+      out.push({ name, units: pair, series: members.filter((s) => pair.includes(s.unit)) });
+    }
+  }
+  return out;
+}
+
+const finiteOrNull = (v) => (Number.isFinite(v) ? v : null);
+
+export class Plots {
+  constructor(run, host, onPick) {
+    this.run = run;
+    this.host = host;
+    this.onPick = onPick;
+    this.time = run.head.frames[0]?.time ?? null;
+    this.plots = [];
+    this.observer = new ResizeObserver(() => this.resize());
+    this.build();
+  }
+
+  build() {
+    this.plots.forEach((p) => p.plot.destroy());
+    this.observer.disconnect();
+    this.plots = [];
+    this.host.replaceChildren();
+    const css = getComputedStyle(document.documentElement);
+    const color = (name) => css.getPropertyValue(name).trim();
+    this.theme = { text: color('--muted'), grid: color('--grid'), mark: color('--accent'), palette: color('--dark') === '1' ? DARK : LIGHT };
+    for (const chart of charts(this.run.head.series)) {
+      const body = el('div', { class: 'plot-body' });
+      const card = el('figure', { class: 'card plot' }, el('figcaption', {}, chart.name), body);
+      this.host.append(card);
+      const drawn = chart.series.filter((s) => s.x.length > 0 && s.y.some(Number.isFinite));
+      const dropped = chart.series.filter((s) => !drawn.includes(s));
+      if (drawn.length > 0) this.plots.push({ body, plot: this.plot({ ...chart, series: drawn }, body) });
+      const missing = dropped.map((s) => s.name).join(', ');
+      if (missing) body.append(el('p', { class: 'empty' }, `No finite value: ${missing}`));
+      this.observer.observe(body);
+    }
+    if (this.time !== null) this.setTime(this.time);
+    this.host.hidden = this.plots.length === 0 && this.run.head.series.length === 0;
+  }
+
+  plot(chart, body) {
+    const { theme } = this;
+    const log = chart.series.every((s) => s.log);
+    const scaleOf = new Map(chart.units.map((unit, i) => {
+      const values = chart.series.filter((s) => s.unit === unit).flatMap((s) => s.y).filter(Number.isFinite);
+      const magnitude = values.reduce((m, v) => Math.max(m, Math.abs(v)), 0);
+      // Rounding noise around zero is read as zero, except where a logarithmic axis is about just that.
+      const settle = log ? (v) => v : (v) => (Math.abs(v) < 1e-12 * magnitude * scale.factor ? 0 : v);
+      const scale = log ? { factor: 1, unit } : unitScale(magnitude, unit);
+      return [unit, { key: `y${i}`, values, settle, ...scale }];
+    }));
+    const tables = chart.series.map((s) => {
+      const { factor } = scaleOf.get(s.unit);
+      const y = s.y.slice(0, s.x.length).map((v) => (Number.isFinite(v) && !(log && v <= 0) ? v * factor : null));
+      // Series need not share their times; sorted, because joining expects it.
+      const order = s.x.map((_, i) => i).filter((i) => finiteOrNull(s.x[i]) !== null && i < y.length).sort((a, b) => s.x[a] - s.x[b]);
+      return [order.map((i) => s.x[i]), order.map((i) => y[i])];
+    });
+    const data = tables.length === 1 ? tables[0] : uPlot.join(tables);
+    const font = '11px system-ui, "Segoe UI", Roboto, "Helvetica Neue", sans-serif';
+    const axis = { stroke: theme.text, font, labelFont: font, labelSize: 16, labelGap: 0, ticks: { stroke: theme.grid, width: 1, size: 4 }, grid: { stroke: theme.grid, width: 1 } };
+    const width = (_, values) => 12 + 6.6 * Math.max(1, ...(values ?? []).map((v) => (v ?? '').length));
+    const format = (_, values) => values.map((v) => (v === null ? '' : significant(v, 5)));
+    const { x } = this.run.head;
+    const used = chart.units.filter((unit) => scaleOf.get(unit).values.length > 0);
+    const scales = { x: { time: false } };
+    for (const unit of used) {
+      scales[scaleOf.get(unit).key] = log ? { distr: 3 } : {
+        range: (_, low, high) => {
+          // A constant is a line in the middle, not noise blown up to full height.
+          const pad = high > low ? 0.08 * (high - low) : Math.abs(high) * 0.1 || 1;
+          return [low >= 0 && low - pad < 0 ? 0 : low - pad, high + pad];
+        },
+      };
+    }
+    return new uPlot({
+      width: Math.max(200, body.clientWidth), height: HEIGHT,
+      scales,
+      padding: [8, used.length > 1 ? 0 : 12, 0, 0],
+      cursor: { points: { size: 6 }, drag: { x: true, y: false } },
+      legend: { live: true },
+      axes: [
+        { ...axis, label: x.unit ? `${x.label} [${x.unit}]` : x.label, size: 30, values: format },
+        ...used.map((unit, i) => {
+          const s = scaleOf.get(unit);
+          const names = chart.series.filter((m) => m.unit === unit);
+          const label = names.length === 1 ? names[0].name : '';
+          return {
+            ...axis, scale: s.key, side: i === 0 ? 3 : 1, size: width, values: format, labelSize: 18,
+            label: [label, s.unit ? `[${s.unit}]` : ''].filter(Boolean).join(' ') || undefined,
+            grid: i === 0 ? axis.grid : { show: false },
+          };
+        }),
+      ],
+      series: [
+        { label: x.label, value: (_, v) => (v === null || v === undefined ? '–' : significant(v, 4)) },
+        ...chart.series.map((s, i) => {
+          const at = scaleOf.get(s.unit);
+          return {
+            label: s.name, scale: at.key, stroke: theme.palette[i % theme.palette.length], width: 1.75, spanGaps: tables.length > 1,
+            points: { show: s.x.length < 2 },
+            value: (_, v) => (v === null || v === undefined ? '–' : `${significant(at.settle(v), 4)}${at.unit ? ` ${at.unit}` : ''}`),
+          };
+        }),
+      ],
+      hooks: {
+        draw: [(u) => this.mark(u)],
+        setCursor: [(u) => { if (u.cursor.left < 0) this.readAt(u); }],
+        ready: [(u) => u.over.addEventListener('click', () => {
+          if (u.cursor.left >= 0) this.onPick(u.posToVal(u.cursor.left, 'x'));
+        })],
+      },
+    }, data, body);
+  }
+
+  /** The vertical line at the time of the frame. */
+  mark(u) {
+    if (this.time === null) return;
+    const x = Math.round(u.valToPos(this.time, 'x', true)) + 0.5;
+    const { left, top, width, height } = u.bbox;
+    if (!(x >= left - 1 && x <= left + width + 1)) return;
+    const { ctx } = u;
+    ctx.save();
+    ctx.strokeStyle = this.theme.mark;
+    ctx.lineWidth = 1.5 * (window.devicePixelRatio || 1);
+    ctx.beginPath();
+    ctx.moveTo(x, top);
+    ctx.lineTo(x, top + height);
+    ctx.stroke();
+    ctx.restore();
+  }
+
+  /** Values at the time shown stand in the key while nobody points at the chart. */
+  readAt(u) {
+    const x = u.data[0];
+    if (this.time === null || x.length === 0) return;
+    let best = 0;
+    for (let i = 1; i < x.length; ++i) if (Math.abs(x[i] - this.time) < Math.abs(x[best] - this.time)) best = i;
+    u.setLegend({ idx: best });
+  }
+
+  setTime(time) {
+    this.time = time;
+    for (const { plot } of this.plots) {
+      plot.redraw(false, false);
+      this.readAt(plot);
+    }
+  }
+
+  resize() {
+    for (const { plot, body } of this.plots) {
+      if (body.clientWidth > 0 && body.clientWidth !== plot.width) plot.setSize({ width: body.clientWidth, height: HEIGHT });
+    }
+  }
+}

@@ -1,0 +1,157 @@
+// Camera, canvas and drawing on demand.
+import * as THREE from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { Body } from './body.js';
+import { Overlays } from './overlays.js';
+
+const VIEWS = {
+  iso: [-55, 24], front: [-90, 0], back: [90, 0], right: [0, 0], left: [180, 0], top: [-90, 89.99], bottom: [-90, -89.99],
+};
+export const VIEW_NAMES = Object.keys(VIEWS);
+const AXIS_COLORS = { x: '#d6453d', y: '#3d9a50', z: '#3b74d1' };
+
+export class Stage {
+  constructor(run, host) {
+    this.run = run;
+    this.host = host;
+    this.canvas = host.querySelector('canvas');
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true, stencil: true });
+    this.renderer.setClearColor(0, 0);
+    this.scene = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(26, 1, 0.05, 100);
+    this.up = run.head.up === 'y' ? 'y' : 'z';
+    this.camera.up.set(0, this.up === 'y' ? 1 : 0, this.up === 'z' ? 1 : 0);
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.enableDamping = false; // a picture must not depend on when it was taken
+    this.controls.zoomToCursor = true;
+    this.controls.minDistance = 0.3;
+    this.controls.maxDistance = 40;
+    this.controls.addEventListener('change', () => this.invalidate());
+    this.controls.addEventListener('start', () => { this.view = null; });
+    this.body = new Body(run);
+    this.overlays = new Overlays(run, host.querySelector('.labels'));
+    this.triad = host.querySelector('.triad');
+    this.scene.add(this.body.object, this.overlays.object);
+    this.fitPoints = [run.rest];
+    new ResizeObserver(() => this.resize()).observe(host);
+    this.resize();
+  }
+
+  invalidate() {
+    if (this.pending) return;
+    this.pending = true;
+    requestAnimationFrame(() => { this.pending = false; this.draw(); });
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.host;
+    if (width === 0 || height === 0) return;
+    const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.body.uniforms.pixel.value = ratio;
+    this.overlays.resize(ratio);
+    if (this.view) this.look(this.view, this.zoom); // until the reader has moved the camera
+    this.draw();
+  }
+
+  draw() {
+    const up = this.body.uniforms.upEye.value.copy(this.camera.up);
+    this.camera.updateMatrixWorld();
+    up.transformDirection(this.camera.matrixWorldInverse);
+    this.renderer.render(this.scene, this.camera);
+    this.overlays.placeLabels(this.camera, this.host.clientWidth, this.host.clientHeight);
+    this.drawTriad();
+  }
+
+  drawTriad() {
+    const p = new THREE.Vector3();
+    const arms = ['x', 'y', 'z'].map((axis, i) => {
+      p.set(+(i === 0), +(i === 1), +(i === 2)).transformDirection(this.camera.matrixWorldInverse);
+      return { axis, x: 32 + 21 * p.x, y: 32 - 21 * p.y, tx: 32 + 28 * p.x, ty: 32 - 28 * p.y, depth: p.z };
+    }).sort((a, b) => a.depth - b.depth);
+    this.triad.innerHTML = arms.map((a) =>
+      `<g stroke="${AXIS_COLORS[a.axis]}" fill="${AXIS_COLORS[a.axis]}"><line x1="32" y1="32" x2="${a.x}" y2="${a.y}"/>`
+      + `<text x="${a.tx}" y="${a.ty}" stroke="none">${a.axis}</text></g>`).join('');
+  }
+
+  /** A named view or "azimuth,elevation" in degrees, framed on the body. */
+  look(view, zoom = 1) {
+    const angles = VIEWS[view] ?? String(view).split(',').map(Number);
+    const [azimuth, elevation] = angles.length === 2 && angles.every(Number.isFinite) ? angles : VIEWS.iso;
+    const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
+    const flat = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a), Math.sin(e)];
+    this.direction = new THREE.Vector3(...(this.up === 'z' ? flat : [flat[0], flat[2], -flat[1]]));
+    this.fit(zoom);
+    this.view = view;
+    this.zoom = zoom;
+  }
+
+  /** Centers the projected body in the space the legend leaves free. */
+  fit(zoom) {
+    const { camera, controls } = this;
+    const target = new THREE.Vector3();
+    let distance = 5;
+    const right = new THREE.Vector3(), upward = new THREE.Vector3(), p = new THREE.Vector3();
+    const width = Math.max(1, this.host.clientWidth);
+    const legend = this.host.querySelector('.legend');
+    const reserved = legend && !legend.hidden ? Math.min(0.3, 105 / width) : 0;
+    for (let pass = 0; pass < 4; ++pass) {
+      camera.position.copy(target).addScaledVector(this.direction, distance);
+      camera.lookAt(target);
+      camera.updateMatrixWorld();
+      camera.updateProjectionMatrix();
+      let [l, r, b, t] = [Infinity, -Infinity, Infinity, -Infinity];
+      for (const points of this.fitPoints) {
+        for (let i = 0; i < points.length; i += 3) {
+          p.fromArray(points, i).project(camera);
+          l = Math.min(l, p.x); r = Math.max(r, p.x);
+          b = Math.min(b, p.y); t = Math.max(t, p.y);
+        }
+      }
+      if (!(r >= l)) break;
+      const halfHeight = distance * Math.tan((camera.fov * Math.PI) / 360);
+      right.setFromMatrixColumn(camera.matrixWorld, 0);
+      upward.setFromMatrixColumn(camera.matrixWorld, 1);
+      target.addScaledVector(right, ((l + r) / 2) * halfHeight * camera.aspect);
+      target.addScaledVector(upward, ((b + t) / 2) * halfHeight);
+      const fill = Math.max((r - l) / 2 / (0.86 - reserved), (t - b) / 2 / 0.76);
+      distance = Math.min(30, Math.max(0.5, distance * fill));
+    }
+    distance /= zoom;
+    const halfWidth = distance * Math.tan((camera.fov * Math.PI) / 360) * camera.aspect;
+    target.addScaledVector(right, reserved * halfWidth); // the body moves left, the legend stands right
+    camera.position.copy(target).addScaledVector(this.direction, distance);
+    controls.target.copy(target);
+    controls.update();
+    this.invalidate();
+  }
+
+  /** How far the camera stands along an axis from what it looks at. */
+  toCamera(axis) {
+    return this.camera.position.getComponent(axis) - this.controls.target.getComponent(axis);
+  }
+
+  /** Orbit by keyboard, in degrees. */
+  turn(horizontal, vertical) {
+    this.view = null;
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const up = this.camera.up;
+    offset.applyAxisAngle(up, (horizontal * Math.PI) / 180);
+    const side = new THREE.Vector3().crossVectors(up, offset).normalize();
+    const turned = offset.clone().applyAxisAngle(side, (vertical * Math.PI) / 180);
+    if (Math.abs(turned.clone().normalize().dot(up)) < 0.999) offset.copy(turned);
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+    this.invalidate();
+  }
+
+  dolly(factor) {
+    this.view = null;
+    this.camera.position.sub(this.controls.target).multiplyScalar(factor).add(this.controls.target);
+    this.controls.update();
+    this.invalidate();
+  }
+}
