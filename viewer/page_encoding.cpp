@@ -121,10 +121,13 @@ std::vector<std::uint16_t> quantize_points(std::span<const Vec3> points, std::sp
   return codes;
 }
 
-QuantizedField quantize_field(std::span<const double> values) {
+QuantizedField quantize_field(std::span<const double> values, std::span<const std::uint8_t> skip) {
+  const auto skipped = [&](std::size_t i) { return !skip.empty() && skip[i] != 0; };
   QuantizedField out;
   bool any = false;
-  for (const double v : values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double v = values[i];
+    if (skipped(i)) continue;
     if (!std::isfinite(v)) {
       ++out.invalid;
       continue;
@@ -137,10 +140,11 @@ QuantizedField quantize_field(std::span<const double> values) {
   // Halves first: the difference of two large numbers of opposite sign may overflow.
   const double half_span = 0.5 * out.high - 0.5 * out.low;
   out.codes.reserve(values.size());
-  for (const double v : values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double v = values[i];
     const double t = half_span > 0 ? (0.5 * v - 0.5 * out.low) / half_span : 0;
-    out.codes.push_back(std::isfinite(v) ? static_cast<std::uint16_t>(std::lround(t * field_levels))
-                                         : invalid_code);
+    const bool shown = std::isfinite(v) && !skipped(i);
+    out.codes.push_back(shown ? static_cast<std::uint16_t>(std::lround(t * field_levels)) : invalid_code);
   }
   return out;
 }

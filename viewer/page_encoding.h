@@ -52,7 +52,9 @@ struct QuantizedField {
   double low = 0, high = 0;
   std::size_t invalid = 0;  // values that were not finite
 };
-QuantizedField quantize_field(std::span<const double> values);
+// Values whose entry in skip is not zero are coded as invalid, but neither counted nor in the range. An empty
+// skip skips nothing.
+QuantizedField quantize_field(std::span<const double> values, std::span<const std::uint8_t> skip = {});
 
 // JSON text, safe inside a <script> element. Numbers that are not finite become null.
 void append_json(std::string& out, double value);

@@ -26,6 +26,8 @@ struct ResultsRecorder::Content {
   std::vector<std::string> blocks;  // one a frame
   std::string frames_json;          // what the page knows of a frame before unpacking it
   std::vector<std::string> notes;
+  // Not zero for triangles of obstacles and for vertices that only these use; empty without obstacles.
+  std::vector<std::uint8_t> skip_triangle, skip_vertex;
 };
 
 namespace {
@@ -149,6 +151,26 @@ Result<void> check_frame(const PageFrame& frame, const PageScene& scene) {
   return {};
 }
 
+void mark_obstacles(const PageScene& scene, std::vector<std::uint8_t>& triangle,
+                    std::vector<std::uint8_t>& vertex) {
+  const auto is_obstacle = [](const PagePart& part) { return part.obstacle; };
+  if (std::none_of(scene.parts.begin(), scene.parts.end(), is_obstacle)) return;
+  const std::size_t count = scene.triangles.size() / 3;
+  triangle.assign(count, 0);
+  vertex.assign(scene.rest.size(), 0);
+  const auto mark = [&](bool obstacle) {
+    for (std::size_t t = 0; t < count; ++t) {
+      const Index part = scene.triangle_part.empty() ? 0 : scene.triangle_part[t];
+      if (scene.parts[static_cast<std::size_t>(part)].obstacle != obstacle) continue;
+      triangle[t] = obstacle;
+      for (std::size_t k = 0; k < 3; ++k)
+        vertex[static_cast<std::size_t>(scene.triangles[3 * t + k])] = obstacle;
+    }
+  };
+  mark(true);
+  mark(false);  // a vertex shared with a body belongs to the body
+}
+
 std::vector<std::uint32_t> widen(std::span<const Index> values) {
   return {values.begin(), values.end()};
 }
@@ -236,6 +258,7 @@ void write_scene(Json& json, const PageScene& scene) {
       json.begin('{');
       json.pair("name", item.name);
       json.pair("color", item.color);
+      if constexpr (requires { item.obstacle; }) json.pair("obstacle", item.obstacle);
       json.end('}');
     }
     json.end(']');
@@ -295,6 +318,7 @@ Result<ResultsRecorder> ResultsRecorder::start(PageScene scene) {
   content->box = content->rest_box;
   content->rest_block = pack_rest(scene, content->rest_box);
   if (content->rest_block.empty()) return refuse("out of memory while compressing the mesh");
+  mark_obstacles(scene, content->skip_triangle, content->skip_vertex);
   content->scene = std::move(scene);
   return ResultsRecorder(std::move(content));
 }
@@ -314,6 +338,7 @@ Result<void> ResultsRecorder::append(const PageFrame& frame) {
       ++lost;
       continue;
     }
+    if (!content.skip_vertex.empty() && content.skip_vertex[i]) continue;
     const Vec3 moved = frame.positions[i] - scene.rest[i];
     displacement = std::max(displacement, std::sqrt(dot(moved, moved)));
   }
@@ -329,8 +354,9 @@ Result<void> ResultsRecorder::append(const PageFrame& frame) {
   write_box(json, "box", box);
   json.key("ranges");
   json.begin('[');
-  for (const std::vector<double>& values : frame.fields) {
-    const page::QuantizedField field = page::quantize_field(values);
+  for (std::size_t i = 0; i < frame.fields.size(); ++i) {
+    const auto& skip = scene.fields[i].per_triangle ? content.skip_triangle : content.skip_vertex;
+    const page::QuantizedField field = page::quantize_field(frame.fields[i], skip);
     block.integers(field.codes);
     json.begin('[');
     json.value(field.low);

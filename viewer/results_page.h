@@ -29,7 +29,9 @@ struct PageField {
 // A separate body or obstacle. A part whose triangles close it is filled where the cut plane meets it.
 struct PagePart {
   std::string name;
-  std::string color = {};  // "#rrggbb"; empty: from the palette
+  std::string color = {};  // "#rrggbb"; empty: from the palette, or gray for an obstacle
+  // A table, a rigid tool: always in its own color. Its field values and displacements are ignored.
+  bool obstacle = false;
 };
 
 // A cable: a polyline whose points are given in each frame.

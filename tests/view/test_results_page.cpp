@@ -136,6 +136,12 @@ TEST_CASE("Fields keep half a level and mark what is not finite", "[view]") {
     CHECK(std::abs(back - values[i]) <= 0.5001 * 8 / page::field_levels);
   }
 
+  const page::QuantizedField partial = page::quantize_field(std::vector<double>{1, 50, not_a_number, 2},
+                                                            std::vector<std::uint8_t>{0, 1, 1, 0});
+  CHECK(partial.high == 2);
+  CHECK(partial.invalid == 0);
+  CHECK(partial.codes[1] == page::invalid_code);
+
   const page::QuantizedField constant = page::quantize_field(std::vector<double>{2, 2});
   CHECK(constant.codes == std::vector<std::uint16_t>{0, 0});
   const page::QuantizedField wide = page::quantize_field(std::vector<double>{-1.7e308, 0, 1.7e308});
@@ -234,6 +240,27 @@ TEST_CASE("A page is written whole, twice the same, and beside nothing", "[view]
   const auto nowhere = write_results_page(folder.file("missing/a.html"), content);
   REQUIRE(!nowhere);
   CHECK(nowhere.error().find("missing/a.html") != std::string::npos);
+}
+
+TEST_CASE("Obstacles have no say in the ranges", "[view]") {
+  const Folder folder;
+  PageScene scene = tetrahedron();
+  // A table below, sharing one vertex with the body.
+  scene.rest.insert(scene.rest.end(), {{5, 0, -1}, {0, 5, -1}});
+  scene.triangles.insert(scene.triangles.end(), {0, 4, 5});
+  scene.parts = {{"body"}, {"table", "", true}};
+  scene.triangle_part = {0, 0, 0, 0, 1};
+  auto recorder = ResultsRecorder::start(scene);
+  REQUIRE(recorder);
+  PageFrame frame = frame_of(scene);
+  frame.fields = {{1, 2, 3, 4, not_a_number, 900}, {0, 0, 1, 1, 7}};
+  frame.positions[5].z = -50;
+  REQUIRE(recorder.value().append(frame));
+  if (!results_page_available()) return;
+  REQUIRE(recorder.value().write(folder.file("a.html"), {}));
+  const std::string html = read(folder.file("a.html"));
+  CHECK(html.find("\"displacement\":0,") != std::string::npos);
+  CHECK(html.find("\"ranges\":[[1,4,0],[0,1,0]]") != std::string::npos);
 }
 
 TEST_CASE("The surface of a mesh is closed and faces outward", "[view]") {

@@ -3,7 +3,7 @@ import * as THREE from 'three';
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
-import { COLOR_TABLES, categoryColor, colorOr } from './colors.js';
+import { COLOR_TABLES, categoryColor, partColor } from './colors.js';
 import {
   bodyFragment, bodyVertex, capFragment, ghostFragment, ghostVertex, plainVertex, stencilFragment,
 } from './shaders.js';
@@ -110,7 +110,7 @@ export class Body {
       const order = 2 + index * 3;
       this.add(new THREE.Mesh(geometry, back), order, this.section);
       this.add(new THREE.Mesh(geometry, front), order + 0.5, this.section);
-      const color = new THREE.Vector3(...colorOr(part.color, index)).multiplyScalar(1 / 255);
+      const color = new THREE.Vector3(...partColor(part, index)).multiplyScalar(1 / 255);
       const material = new THREE.ShaderMaterial({
         uniforms: { color: { value: new THREE.Vector3() }, pixel: this.uniforms.pixel },
         vertexShader: plainVertex, fragmentShader: capFragment, side: THREE.DoubleSide,
@@ -119,7 +119,7 @@ export class Body {
         // Values inside, where the run has them, are drawn over this fill.
         polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2,
       });
-      this.capMaterials.push({ material, color });
+      this.capMaterials.push({ material, color, obstacle: part.obstacle });
       this.add(new THREE.Mesh(this.capGeometry, material), order + 0.75, this.section);
     });
     this.outline = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({
@@ -190,12 +190,14 @@ export class Body {
       const f = Math.floor(c / 3);
       const value = values ? values[field.place === 'triangle' ? f : triangles[c]] : 0;
       const finite = Number.isFinite(value);
+      const part = this.parts[trianglePart[f]];
       if (this.uniforms.mode.value === 0) {
         this.value.array[c] = finite ? value : 0;
-        this.valid.array[c] = finite ? 1 : 0;
-      } else {
-        let rgb = colorOr(this.parts[trianglePart[f]]?.color, trianglePart[f]);
-        if (categorical) rgb = finite ? categoryColor(Math.round(value)) : gray;
+        this.valid.array[c] = part.obstacle ? -1 : finite ? 1 : 0;
+      }
+      if (this.uniforms.mode.value === 1 || part.obstacle) {
+        let rgb = partColor(part, trianglePart[f]);
+        if (categorical && !part.obstacle) rgb = finite ? categoryColor(Math.round(value)) : gray;
         this.solid.array.set(rgb.map((v) => v / 255), 3 * c);
       }
     }
@@ -217,9 +219,9 @@ export class Body {
     const [a, b, c, d] = [at(-1, -1), at(1, -1), at(1, 1), at(-1, 1)];
     this.capGeometry.attributes.position.array.set([...a, ...b, ...c, ...a, ...c, ...d]);
     this.capGeometry.attributes.position.needsUpdate = true;
-    for (const { material, color } of this.capMaterials) {
+    for (const { material, color, obstacle } of this.capMaterials) {
       // Gray beside a field: a colored fill could be read as a value.
-      const gray = this.uniforms.mode.value === 0;
+      const gray = this.uniforms.mode.value === 0 && !obstacle;
       material.uniforms.color.value.set(...(gray ? [0.8, 0.81, 0.83] : color.toArray().map((c) => 0.25 + 0.72 * c)));
     }
     const segments = sliceSurface(this.run.triangles, this.positions, plane);

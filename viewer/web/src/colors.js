@@ -78,6 +78,11 @@ export function colorOr(text, index) {
   return [value >> 16, (value >> 8) & 255, value & 255];
 }
 
+/** Color of a part; obstacles stay out of the palette of the bodies. */
+export function partColor(part, index) {
+  return part.obstacle && !part.color ? [176, 181, 188] : colorOr(part.color, index);
+}
+
 /** CSS gradient of a table, low at the start. */
 export function gradient(name, direction) {
   const t = COLOR_TABLES[name];

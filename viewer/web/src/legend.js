@@ -1,5 +1,5 @@
 // The color legend: label, unit, round ticks; swatches for categories.
-import { categoryColor, colorOr, cssColor, gradient } from './colors.js';
+import { categoryColor, cssColor, gradient, partColor } from './colors.js';
 import { fixed, niceTicks, unitScale } from './numbers.js';
 import { el } from './dom.js';
 
@@ -11,7 +11,7 @@ export function drawLegend(host, { field, range, parts, invalid, perFrame }) {
     host.hidden = names.filter(Boolean).length === 0 || (field.kind === 'solid' && names.length < 2);
     if (field.kind !== 'solid') host.append(el('div', { class: 'legend-title' }, field.label || field.name));
     host.append(el('ul', { class: 'swatches' }, ...names.map((name, i) => el('li', {},
-      el('i', { style: `background:${cssColor(field.kind === 'solid' ? colorOr(parts[i].color, i) : categoryColor(i))}` }),
+      el('i', { style: `background:${cssColor(field.kind === 'solid' ? partColor(parts[i], i) : categoryColor(i))}` }),
       name || `${i}`))));
     return;
   }

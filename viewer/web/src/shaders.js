@@ -53,6 +53,7 @@ void main() {
     float s = (vValue - range.x) / max(range.y - range.x, 1e-30);
     base = texture2D(table, vec2(clamp(s, 0.0, 1.0) * (255.0 / 256.0) + 0.5 / 256.0, 0.5)).rgb;
     if (vValid < 0.999) base = vec3(0.56);
+    if (vValid < -0.5) base = vSolid;  // an obstacle
   }
   base = toLinear(base);
 
