@@ -78,7 +78,7 @@ const tests = {
     const page = await open('full');
     console.log(`    opened in ${Math.round(performance.now() - start)} ms`);
     assert.equal(await page.evaluate(`performance.getEntriesByType('resource').filter((e) => !e.name.startsWith('data:')).length`), 0);
-    assert.equal(await page.evaluate('document.title'), 'Pneumatic finger');
+    assert.equal(await page.evaluate('document.title'), 'Pneumatic finger (sample data)');
     const drawn = await pixels(page);
     assert.ok(drawn.covered > 0.03 * drawn.total, `the body covers ${drawn.covered} pixels`);
     assert.ok(drawn.colors > 200, `${drawn.colors} colors`);
