@@ -1,6 +1,8 @@
-// Writes a results page of a pneumatic finger whose motion is known in closed form: a thick capsule that
-// widens without changing its volume and bends. It is what the browser test looks at. Usage: make_demo_page
-// OUT.html [broken|single|bare]
+// Writes a sample results page: a thick capsule that widens at constant wall area and bends.
+// Motion, fields and curves are formulas; nothing here is a result of the engine. The browser test looks at
+// it.
+//
+//   make_demo_page OUT.html [broken|single|bare]
 #include <algorithm>
 #include <array>
 #include <cmath>
