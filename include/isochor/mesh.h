@@ -13,9 +13,13 @@ namespace isochor {
 // Node orders are those of VTK: Tet10 has its mid-edge nodes on (01)(12)(20)(03)(13)(23).
 enum class CellType : std::uint8_t { tet4, tet10 };
 
-constexpr int nodes_per_cell(CellType type) { return type == CellType::tet4 ? 4 : 10; }
+constexpr int nodes_per_cell(CellType type) {
+  return type == CellType::tet4 ? 4 : 10;
+}
 // Faces of a Tet10 carry their mid-edge nodes after the corners: (01)(12)(20).
-constexpr int nodes_per_face(CellType type) { return type == CellType::tet4 ? 3 : 6; }
+constexpr int nodes_per_face(CellType type) {
+  return type == CellType::tet4 ? 3 : 6;
+}
 
 // A named set of faces. The node order of a face need not say which side is outside.
 struct MeshSurface {

@@ -56,8 +56,8 @@ struct VtkGrid {
   std::vector<VtkField> point_fields, cell_fields;
 };
 
-// Writes a .vtu that ParaView opens (binary, compressed). Written to a temporary name first, then renamed, so an
-// interrupted run leaves no half file.
+// Writes a .vtu that ParaView opens (binary, compressed). Written to a temporary name first, then renamed, so
+// an interrupted run leaves no half file.
 Result<void> write_vtu(const std::string& path, const VtkGrid& grid);
 
 struct PvdEntry {

@@ -1,0 +1,15 @@
+# Sequential MUMPS, double precision: imported target MUMPS::MUMPS.
+find_path(MUMPS_INCLUDE_DIR dmumps_c.h PATH_SUFFIXES mumps_seq MUMPS)
+find_library(MUMPS_LIBRARY NAMES dmumps_seq dmumps)
+if(MUMPS_INCLUDE_DIR)
+  file(GLOB _mumps_headers ${MUMPS_INCLUDE_DIR}/dmumps_c.h)
+  file(STRINGS ${_mumps_headers} _mumps_version REGEX "define MUMPS_VERSION " LIMIT_COUNT 1)
+  string(REGEX REPLACE ".*\"([0-9.]+).*" "\\1" MUMPS_VERSION "${_mumps_version}")
+endif()
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(MUMPS REQUIRED_VARS MUMPS_LIBRARY MUMPS_INCLUDE_DIR VERSION_VAR MUMPS_VERSION)
+if(MUMPS_FOUND AND NOT TARGET MUMPS::MUMPS)
+  add_library(MUMPS::MUMPS UNKNOWN IMPORTED)
+  set_target_properties(MUMPS::MUMPS PROPERTIES IMPORTED_LOCATION ${MUMPS_LIBRARY}
+                        INTERFACE_INCLUDE_DIRECTORIES ${MUMPS_INCLUDE_DIR})
+endif()

@@ -1,0 +1,84 @@
+# One static library a module; isochor::isochor is all that a host needs. Effects are object files in an archive, so a
+# host links only those it names.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+add_library(isochor_options INTERFACE)
+target_compile_features(isochor_options INTERFACE cxx_std_20)
+target_compile_options(isochor_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  $<$<BOOL:${ISOCHOR_WERROR}>:-Werror>
+  # g++ 12 reports its own AVX intrinsics as uninitialized.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
+  # Sums are written in the order that must hold; contraction to fused multiply-add is the compiler's choice per
+  # build, not per thread count.
+  $<$<BOOL:${ISOCHOR_NATIVE}>:-march=native>)
+
+# isochor_module(name sources...): a static library with the include layout of the tree.
+function(isochor_module name)
+  add_library(isochor_${name} STATIC ${ARGN})
+  add_library(isochor::${name} ALIAS isochor_${name})
+  target_include_directories(isochor_${name}
+    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    PRIVATE ${PROJECT_SOURCE_DIR})
+  target_compile_features(isochor_${name} PUBLIC cxx_std_20)
+  target_link_libraries(isochor_${name} PRIVATE $<BUILD_INTERFACE:isochor_options>)
+  set_target_properties(isochor_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  set_property(GLOBAL APPEND PROPERTY ISOCHOR_MODULES isochor_${name})
+endfunction()
+
+function(isochor_sources out)
+  set(found)
+  foreach(folder ${ARGN})
+    file(GLOB here CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.cpp)
+    list(APPEND found ${here})
+  endforeach()
+  set(${out} ${found} PARENT_SCOPE)
+endfunction()
+
+isochor_sources(_mesh engine/mesh)
+isochor_module(mesh ${_mesh})
+target_link_libraries(isochor_mesh PRIVATE pugixml::pugixml ZLIB::ZLIB)
+
+isochor_sources(_solvers engine/solvers)
+isochor_module(solvers ${_solvers})
+target_link_libraries(isochor_solvers PRIVATE Eigen3::Eigen Threads::Threads ${CMAKE_DL_LIBS})
+foreach(backend MUMPS CHOLMOD METIS)
+  if(ISOCHOR_HAVE_${backend})
+    target_compile_definitions(isochor_solvers PRIVATE ISOCHOR_HAVE_${backend})
+    target_link_libraries(isochor_solvers PRIVATE ${backend}::${backend})
+  endif()
+endforeach()
+
+isochor_sources(_engine engine engine/elements)
+isochor_module(engine ${_engine})
+target_link_libraries(isochor_engine PUBLIC isochor_mesh isochor_solvers PRIVATE Eigen3::Eigen TBB::tbb)
+
+isochor_sources(_materials materials)
+isochor_module(materials ${_materials})
+target_link_libraries(isochor_materials PUBLIC isochor_engine PRIVATE Eigen3::Eigen)
+
+isochor_sources(_constraints constraints)
+isochor_module(constraints ${_constraints})
+target_link_libraries(isochor_constraints PUBLIC isochor_engine PRIVATE Eigen3::Eigen)
+
+isochor_sources(_integrators integrators)
+isochor_module(integrators ${_integrators})
+target_link_libraries(isochor_integrators PUBLIC isochor_engine)
+
+add_library(isochor INTERFACE)
+add_library(isochor::isochor ALIAS isochor)
+target_link_libraries(isochor INTERFACE isochor_materials isochor_constraints isochor_integrators isochor_engine)
+set_property(GLOBAL APPEND PROPERTY ISOCHOR_MODULES isochor)
+
+get_property(_modules GLOBAL PROPERTY ISOCHOR_MODULES)
+install(TARGETS ${_modules} EXPORT isochor-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY include/isochor DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(EXPORT isochor-targets NAMESPACE isochor:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/isochor)
+configure_package_config_file(cmake/isochor-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/isochor-config.cmake
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/isochor)
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/isochor-config-version.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/isochor-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/isochor-config-version.cmake
+  cmake/FindMUMPS.cmake cmake/FindMETIS.cmake cmake/FindCHOLMOD.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/isochor)

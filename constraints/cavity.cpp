@@ -1,0 +1,272 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "constraints/surface_pool.h"
+#include "engine/builder.h"
+
+namespace isochor {
+
+namespace {
+
+// A face turned so that its normal points from the cavity into the solid.
+using Face = std::vector<Index>;
+
+std::array<Index, 3> sorted_corners(const Index* n) {
+  std::array<Index, 3> key{n[0], n[1], n[2]};
+  std::sort(key.begin(), key.end());
+  return key;
+}
+
+void flip(Face& f) {
+  std::swap(f[1], f[2]);
+  if (f.size() == 6) std::swap(f[3], f[5]);
+}
+
+// Turns faces against the outward normals of the cells that own them; refuses faces that are not on the
+// boundary.
+Result<void> orient(const BodyData& body, std::vector<Face>& faces, std::span<const Vec3> rest,
+                    const std::string& who) {
+  const auto per = static_cast<std::size_t>(nodes_per_cell(body.mesh.cell_type));
+  constexpr std::size_t kSide[4][4] = {
+      {0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}};   // face, opposite
+  std::map<std::array<Index, 3>, std::pair<int, Index>> owners;  // count, opposite corner
+  for (const Face& f : faces) owners[sorted_corners(f.data())] = {0, -1};
+  for (std::size_t c = 0; c < body.global_cells.size(); c += per) {
+    const Index* n = body.global_cells.data() + c;
+    for (const auto& side : kSide) {
+      const Index corner[3] = {n[side[0]], n[side[1]], n[side[2]]};
+      const auto it = owners.find(sorted_corners(corner));
+      if (it == owners.end()) continue;
+      ++it->second.first;
+      it->second.second = n[side[3]];
+    }
+  }
+  for (Face& f : faces) {
+    const auto& [count, opposite] = owners[sorted_corners(f.data())];
+    if (count != 1) {
+      return Error{who + "face (" + std::to_string(f[0] - body.first_node + 1) + ", " +
+                   std::to_string(f[1] - body.first_node + 1) + ", " +
+                   std::to_string(f[2] - body.first_node + 1) + ") belongs to " + std::to_string(count) +
+                   " cells; a cavity is bounded by faces of exactly one cell, name boundary surfaces only"};
+    }
+    const Vec3 a = rest[at(f[0])];
+    const Vec3 normal = cross(rest[at(f[1])] - a, rest[at(f[2])] - a);
+    if (dot(normal, rest[at(opposite)] - a) < 0) flip(f);
+  }
+  return {};
+}
+
+// Boundary loops of the oriented faces: corner nodes in order, with the mid-edge node after each corner for
+// Tet10.
+Result<std::vector<std::vector<Index>>> boundary_loops(const std::vector<Face>& faces,
+                                                       const std::string& who) {
+  std::map<std::pair<Index, Index>, Index> directed;  // edge -> mid-node or -1
+  for (const Face& f : faces) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index mid = f.size() == 6 ? f[3 + k] : -1;
+      if (!directed.emplace(std::pair(f[k], f[(k + 1) % 3]), mid).second) {
+        return Error{
+            who +
+            "its surface is not a manifold: an edge is used twice in the same direction; mend the mesh, "
+            "`isochor check` lists such edges"};
+      }
+    }
+  }
+  std::map<Index, std::pair<Index, Index>> next;  // corner -> (next corner, mid)
+  for (const auto& [edge, mid] : directed) {
+    if (directed.count({edge.second, edge.first}) > 0) continue;
+    // The hole's loop runs against the faces.
+    if (!next.emplace(edge.second, std::pair(edge.first, mid)).second) {
+      return Error{who + "two of its openings touch in one node; separate them in the mesh"};
+    }
+  }
+  std::vector<std::vector<Index>> loops;
+  while (!next.empty()) {
+    std::vector<Index> loop;
+    Index at_node = next.begin()->first;
+    while (true) {
+      const auto it = next.find(at_node);
+      if (it == next.end()) break;
+      loop.push_back(it->first);
+      if (it->second.second >= 0) loop.push_back(it->second.second);
+      at_node = it->second.first;
+      next.erase(it);
+    }
+    loops.push_back(std::move(loop));
+  }
+  return loops;
+}
+
+// Fan over a loop from its first corner.
+void add_cap(EnclosedVolumePool& pool, const std::vector<Index>& loop, bool curved) {
+  const std::size_t stride = curved ? 2 : 1, corners = loop.size() / stride;
+  const auto corner = [&](std::size_t i) { return loop[(i % corners) * stride]; };
+  const auto middle = [&](std::size_t i) { return loop[(i % corners) * stride + 1]; };
+  if (!curved) {
+    for (std::size_t i = 1; i + 1 < corners; ++i) {
+      const Index tri[3] = {corner(0), corner(i), corner(i + 1)};
+      pool.add_face(tri, triangle3_rule());
+    }
+    return;
+  }
+  // The fan meets the two edges at its apex along their chords; their bulges are added apart.
+  for (std::size_t i = 1; i + 1 < corners; ++i) {
+    const Index cap[4] = {corner(0), corner(i), corner(i + 1), middle(i)};
+    pool.add_face(cap, cap4_rule());
+  }
+  for (const std::size_t i : {std::size_t{0}, corners - 1}) {
+    const Index bulge[3] = {corner(i), corner(i + 1), middle(i)};
+    pool.add_face(bulge, bulge3_rule());
+  }
+}
+
+class CavityRow final : public RowPool {
+ public:
+  CavityRow(std::string name, CavityControl control, double rest_volume, std::shared_ptr<Amount> amount)
+      : name_(std::move(name)), control_(control), rest_volume_(rest_volume), amount_(std::move(amount)) {}
+  std::string_view name() const override { return name_; }
+  void update(double t, std::span<double> value) const override { value[0] = amount_value(t); }
+
+  // Multiplier -p for pressure control, target volume otherwise.
+  double amount_value(double t) const {
+    const double a = amount_->value(t);
+    if (control_ == CavityControl::pressure) return -a;
+    return control_ == CavityControl::volume ? a : a * rest_volume_;
+  }
+
+ private:
+  std::string name_;
+  CavityControl control_;
+  double rest_volume_;
+  std::shared_ptr<Amount> amount_;
+};
+
+class CavityInstance final : public EffectInstance {
+ public:
+  CavityInstance(std::string name, std::shared_ptr<const EnclosedVolumePool> pool,
+                 std::shared_ptr<CavityRow> row, Index row_pool, std::shared_ptr<Amount> amount)
+      : name_(std::move(name)),
+        pool_(std::move(pool)),
+        row_(std::move(row)),
+        row_pool_(row_pool),
+        amount_(std::move(amount)) {}
+
+  Amount* amount() override { return amount_.get(); }
+  void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
+    const double lambda = row_->law == RowLaw::prescribed ? row_->amount_value(c.state.t)
+                                                          : c.state.lambda[at(c.system.first_row(row_pool_))];
+    out.push_back({name_, "cavity", "pressure", "Pa", -lambda});
+    out.push_back({name_, "cavity", "volume", "m^3", pool_->volume(c.state.x)});
+  }
+
+ private:
+  std::string name_;
+  std::shared_ptr<const EnclosedVolumePool> pool_;
+  std::shared_ptr<CavityRow> row_;
+  Index row_pool_;
+  std::shared_ptr<Amount> amount_;
+};
+
+class CavityEffect final : public EffectSource {
+ public:
+  explicit CavityEffect(CavityDef def) : def_(std::move(def)) {}
+  const std::string& name() const override { return def_.name; }
+
+  Result<void> check() const override {
+    for (const auto& p : def_.amount.points) {
+      if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
+        return Error{who() + "its amount has a value that is no number"};
+      if (def_.control != CavityControl::pressure && p[1] <= 0) {
+        return Error{who() + "volume amount " + std::to_string(p[1]) +
+                     "; a chamber's volume must stay positive"};
+      }
+    }
+    if (def_.surfaces.empty())
+      return Error{who() + "no surface named; name the faces that bound the chamber"};
+    return {};
+  }
+
+  Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
+    auto list = builder.faces(def_.body, def_.surfaces, def_.name);
+    if (!list) return Error{list.error()};
+    const BodyData& body = builder.body(def_.body);
+    const auto per = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
+    std::vector<Face> faces;
+    for (std::size_t f = 0; f < list.value().size(); f += per) {
+      const auto first = list.value().begin() + static_cast<std::ptrdiff_t>(f);
+      faces.emplace_back(first, first + static_cast<std::ptrdiff_t>(per));
+    }
+    if (auto r = orient(body, faces, builder.rest(), who()); !r) return Error{r.error()};
+    Vec3 origin{};
+    for (const Face& f : faces)
+      origin += (1.0 / static_cast<double>(faces.size())) * builder.rest()[at(f[0])];
+    auto pool = std::make_shared<EnclosedVolumePool>(def_.name, origin);
+    const FaceRule& rule = per == 6 ? triangle6_rule() : triangle3_rule();
+    for (const Face& f : faces) pool->add_face(f, rule);
+    auto loops = boundary_loops(faces, who());
+    if (!loops) return Error{loops.error()};
+    for (const auto& loop : loops.value()) {
+      if (auto r = check_opening(builder, body, loop); !r) return Error{r.error()};
+      add_cap(*pool, loop, per == 6);
+    }
+    pool->finish();
+    return finish(builder, pool);
+  }
+
+ private:
+  std::string who() const { return "cavity \"" + def_.name + "\": "; }
+
+  Result<void> check_opening(const Builder& builder, const BodyData& body,
+                             const std::vector<Index>& loop) const {
+    if (def_.cap_free_openings) return {};
+    for (const Index n : loop) {
+      if (builder.given_directions(n) > 0) continue;
+      const Vec3& X = builder.rest()[at(n)];
+      return Error{
+          who() + "it has an opening of " + std::to_string(loop.size()) + " nodes that nothing caps: node " +
+          std::to_string(n - body.first_node + 1) + " at (" + std::to_string(X.x) + ", " +
+          std::to_string(X.y) + ", " + std::to_string(X.z) +
+          ") is free; hold the rim with a dirichlet support added before the cavity, close the surface, or "
+          "set cap_free_openings"};
+    }
+    return {};
+  }
+
+  Result<std::unique_ptr<EffectInstance>> finish(Builder& builder,
+                                                 const std::shared_ptr<EnclosedVolumePool>& pool) const {
+    const double rest_volume = pool->volume(builder.rest());
+    if (def_.control != CavityControl::pressure && rest_volume <= 0) {
+      return Error{who() + "its surface encloses the body rather than a chamber (signed volume " +
+                   std::to_string(rest_volume) +
+                   " m^3); volume control needs a chamber, use pressure control outside"};
+    }
+    auto amount = std::make_shared<Amount>(def_.amount);
+    auto row = std::make_shared<CavityRow>(def_.name, def_.control, rest_volume, amount);
+    row->stencil_pool = builder.add_stencils(pool);
+    row->law = def_.control == CavityControl::pressure ? RowLaw::prescribed : RowLaw::compliant;
+    for (Index f = 0; f < pool->stencils(); ++f) {
+      row->map.item.push_back(f);
+      row->weight.push_back(1);
+    }
+    row->map.offset.push_back(pool->stencils());
+    double mu = 0;
+    for (const RegionData& r : builder.body(def_.body).regions)
+      mu = std::max(mu, r.material->shear_modulus());
+    row->metric.push_back(std::abs(rest_volume) / mu);
+    row->measure.push_back(std::abs(rest_volume));
+    const Index row_pool = builder.add_rows(row);
+    return std::unique_ptr<EffectInstance>(
+        std::make_unique<CavityInstance>(def_.name, pool, row, row_pool, std::move(amount)));
+  }
+
+  CavityDef def_;
+};
+
+}  // namespace
+
+EffectPtr cavity(CavityDef def) {
+  return std::make_shared<CavityEffect>(std::move(def));
+}
+
+}  // namespace isochor

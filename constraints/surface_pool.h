@@ -1,0 +1,53 @@
+// Stencils on faces: the signed volume under a face, and rest areas of faces.
+#pragma once
+
+#include <utility>
+
+#include "engine/pool.h"
+
+namespace isochor {
+
+// Shape functions of one kind of face at quadrature points.
+struct FaceRule {
+  int nodes = 0, points = 0;
+  std::vector<double> weight;       // points; the reference triangle has area 1/2
+  std::vector<double> N, N_u, N_v;  // [q * nodes + a]
+};
+const FaceRule& triangle3_rule();
+const FaceRule& triangle6_rule();
+// A flat cap next to a curved edge: nodes (apex, a, b, middle of ab); the edges to the apex are straight.
+const FaceRule& cap4_rule();
+// What lies between a curved edge (a, b, middle) and its chord.
+const FaceRule& bulge3_rule();
+
+// Rest area that falls to each node of a face, integral of N_a dA [m^2]. 3 or 6 nodes.
+std::vector<std::pair<Index, double>> nodal_areas(std::span<const Index> face, std::span<const Vec3> rest);
+
+// One function a face: V = 1/3 integral (x - origin) . n da [m^3]. Over a closed surface the sum is the
+// enclosed volume, whatever the origin; its gradient is the pressure load, its Hessian the (symmetric)
+// follower stiffness.
+class EnclosedVolumePool final : public StencilPool {
+ public:
+  EnclosedVolumePool(std::string name, Vec3 origin) : name_(std::move(name)), origin_(origin) {}
+  // Node order gives the normal; `rule` is one of those above and must outlive the pool.
+  void add_face(std::span<const Index> nodes, const FaceRule& rule) {
+    nodes_.push(nodes);
+    rule_.push_back(&rule);
+  }
+  void finish() { finish_topology(); }
+
+  std::string_view name() const override { return name_; }
+  bool has_energy() const override { return false; }
+  int functions() const override { return 1; }
+  void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
+
+  double volume(std::span<const Vec3> x) const;
+
+ private:
+  double face_volume(Index face, std::span<const Vec3> x) const;
+  std::string name_;
+  Vec3 origin_;
+  std::vector<const FaceRule*> rule_;
+};
+
+}  // namespace isochor

@@ -1,0 +1,124 @@
+#include <cmath>
+
+#include "constraints/volume_rows.h"
+#include "engine/builder.h"
+
+namespace isochor {
+
+namespace {
+
+// Rows at nodes know the pressure there.
+class VolumeInstance final : public EffectInstance {
+ public:
+  struct Nodal {
+    Index row_pool;
+    std::vector<Index> nodes;
+  };
+  std::vector<Nodal> nodal;
+
+  void node_multipliers(const GaugeContext& c, std::span<double> pressure) const override {
+    for (const Nodal& n : nodal) {
+      for (std::size_t r = 0; r < n.nodes.size(); ++r) {
+        const double p = c.state.lambda[at(c.system.first_row(n.row_pool)) + r];
+        double& out = pressure[at(n.nodes[r])];
+        // Where regions meet each has its own row; the node shows their mean.
+        out = std::isnan(out) ? p : 0.5 * (out + p);
+      }
+    }
+  }
+};
+
+class VolumeEffect final : public EffectSource {
+ public:
+  explicit VolumeEffect(VolumeDef def) : def_(std::move(def)) {}
+  const std::string& name() const override { return def_.name; }
+
+  Result<void> check() const override {
+    if (!std::isfinite(def_.stabilization) || def_.stabilization < 0) {
+      return Error{who() + "stabilization = " + std::to_string(def_.stabilization) +
+                   "; it must be zero (off) or positive, 1 is the default"};
+    }
+    return {};
+  }
+
+  Result<void> declare(Builder& builder) const override {
+    auto regions = builder.regions(def_.body, def_.regions, def_.name);
+    if (!regions) return Error{regions.error()};
+    for (const std::size_t r : regions.value()) {
+      const MaterialModel& material = *builder.body(def_.body).regions[r].material;
+      if (std::isinf(material.inverse_bulk()) && !def_.hard) {
+        // kappa = 0: the rows would carry no pressure at all.
+        if (def_.carries_bulk) builder.claim_bulk(def_.body, r);
+        continue;
+      }
+      builder.want_volume(def_.body, r, strain());
+      if (def_.carries_bulk && !builder.claim_bulk(def_.body, r)) {
+        return Error{who() + "other volume rows already carry the bulk modulus of region \"" +
+                     builder.body(def_.body).regions[r].name +
+                     "\"; set carries_bulk = false on the rows that come on top"};
+      }
+    }
+    return {};
+  }
+
+  Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
+    auto regions = builder.regions(def_.body, def_.regions, def_.name);
+    if (!regions) return Error{regions.error()};
+    const BodyData& body = builder.body(def_.body);
+    std::vector<VolumeRegion> list;
+    for (const std::size_t r : regions.value()) {
+      const RegionData& region = body.regions[r];
+      const Index pool = region.volume_pool[static_cast<std::size_t>(strain())];
+      if (pool < 0) continue;
+      VolumeRegion v;
+      v.name = def_.name + (body.regions.size() > 1 ? "/" + region.name : "");
+      v.stencil_pool = pool;
+      v.pool = &builder.solid(pool);
+      v.corners = body.reference->corners;
+      v.inverse_bulk = def_.hard ? 0 : region.material->inverse_bulk();
+      v.shear_modulus = region.material->shear_modulus();
+      list.push_back(v);
+    }
+    auto instance = std::make_unique<VolumeInstance>();
+    for (const VolumeRegion& v : list) add_rows(builder, body, v, *instance);
+    return std::unique_ptr<EffectInstance>(std::move(instance));
+  }
+
+ private:
+  std::string who() const { return "volume \"" + def_.name + "\": "; }
+  VolumeStrain strain() const {
+    return def_.strain == VolumeStrainKind::linear ? VolumeStrain::linear : VolumeStrain::logarithmic;
+  }
+
+  void add_rows(Builder& builder, const BodyData& body, const VolumeRegion& region,
+                VolumeInstance& instance) const {
+    const bool equal_order = body.element != Element::tet10;
+    switch (def_.space) {
+      case VolumeSpace::node: {
+        std::vector<Index> nodes;
+        const Index pool =
+            builder.add_rows(nodal_volume_rows(region, equal_order ? def_.stabilization : 0, &nodes));
+        if (def_.strain == VolumeStrainKind::linear && def_.carries_bulk) {
+          instance.nodal.push_back({pool, std::move(nodes)});
+        }
+        break;
+      }
+      case VolumeSpace::element:
+        builder.add_rows(element_volume_rows(region));
+        break;
+      case VolumeSpace::body:
+        builder.add_rows(total_volume_row(region));
+        break;
+    }
+  }
+
+  VolumeDef def_;
+};
+
+}  // namespace
+
+EffectPtr volume(VolumeDef def) {
+  return std::make_shared<VolumeEffect>(std::move(def));
+}
+
+}  // namespace isochor

@@ -1,0 +1,113 @@
+#include "constraints/volume_rows.h"
+
+#include <algorithm>
+#include <map>
+
+namespace isochor {
+
+namespace {
+
+// Integral of N_k N_l over a stencil. A one-point tet takes the closed form V/20 (1 + delta).
+double pressure_mass(const SolidData& data, Index stencil, double volume, int k, int l) {
+  if (data.functions == 1) return volume / 20 * (k == l ? 2 : 1);
+  double sum = 0;
+  for (int q = 0; q < data.points; ++q) {
+    const double* N = data.shape.data() + static_cast<std::size_t>(q * data.functions);
+    sum += data.weight[at(stencil * data.points + q)] * N[k] * N[l];
+  }
+  return sum;
+}
+
+// All functions of a stencil together integrate Phi; N_k sum to one.
+void push_whole_stencil(RowPool& rows, Index stencil, int functions) {
+  for (int k = 0; k < functions; ++k) {
+    rows.map.item.push_back(stencil * functions + k);
+    rows.weight.push_back(1);
+  }
+}
+
+void finish_row(RowPool& rows, double volume, const VolumeRegion& region) {
+  rows.map.offset.push_back(static_cast<Index>(rows.map.item.size()));
+  rows.metric.push_back(volume / region.shear_modulus);
+  rows.measure.push_back(volume);
+}
+
+}  // namespace
+
+std::shared_ptr<RowPool> element_volume_rows(const VolumeRegion& region) {
+  auto rows = std::make_shared<VolumeRows>(region.name);
+  rows->stencil_pool = region.stencil_pool;
+  for (Index s = 0; s < region.pool->stencils(); ++s) {
+    const double volume = region.pool->volume(s);
+    push_whole_stencil(*rows, s, region.pool->functions());
+    finish_row(*rows, volume, region);
+    rows->compliance.push_back({s, s, volume * region.inverse_bulk});
+  }
+  return rows;
+}
+
+std::shared_ptr<RowPool> total_volume_row(const VolumeRegion& region) {
+  auto rows = std::make_shared<VolumeRows>(region.name);
+  rows->stencil_pool = region.stencil_pool;
+  double volume = 0;
+  for (Index s = 0; s < region.pool->stencils(); ++s) {
+    volume += region.pool->volume(s);
+    push_whole_stencil(*rows, s, region.pool->functions());
+  }
+  finish_row(*rows, volume, region);
+  rows->compliance.push_back({0, 0, volume * region.inverse_bulk});
+  return rows;
+}
+
+std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double tau,
+                                           std::vector<Index>* corner_nodes) {
+  auto rows = std::make_shared<VolumeRows>(region.name);
+  rows->stencil_pool = region.stencil_pool;
+  const SolidPool& pool = *region.pool;
+  const SolidData& data = pool.data();
+  const std::size_t corners = static_cast<std::size_t>(region.corners);
+  // Rows in ascending order of their nodes, whatever the order of the cells.
+  std::vector<Index> nodes;
+  for (Index s = 0; s < pool.stencils(); ++s) {
+    for (std::size_t k = 0; k < corners; ++k) nodes.push_back(pool.nodes()[s][k]);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  const auto row_of = [&](Index node) {
+    return static_cast<Index>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
+  };
+  std::vector<std::vector<std::pair<Index, double>>> terms(nodes.size());
+  std::vector<double> volume(nodes.size(), 0);
+  std::map<std::pair<Index, Index>, double> compliance;
+  const bool per_corner = data.functions == region.corners;
+  for (Index s = 0; s < pool.stencils(); ++s) {
+    const double V = pool.volume(s);
+    Index row[8];
+    for (std::size_t k = 0; k < corners; ++k) row[k] = row_of(pool.nodes()[s][k]);
+    for (std::size_t k = 0; k < corners; ++k) {
+      const int kk = static_cast<int>(k);
+      terms[at(row[k])].push_back(per_corner ? std::pair(s * data.functions + kk, 1.0)
+                                             : std::pair(s, 1.0 / static_cast<double>(corners)));
+      for (std::size_t l = 0; l < corners; ++l) {
+        const double mass = pressure_mass(data, s, V, kk, static_cast<int>(l));
+        volume[at(row[k])] += mass;
+        if (row[k] < row[l]) continue;
+        double c = mass * region.inverse_bulk;
+        if (tau > 0) c += tau / region.shear_modulus * (mass - V / static_cast<double>(corners * corners));
+        if (c != 0) compliance[{row[k], row[l]}] += c;
+      }
+    }
+  }
+  for (std::size_t r = 0; r < nodes.size(); ++r) {
+    for (const auto& [function, weight] : terms[r]) {
+      rows->map.item.push_back(function);
+      rows->weight.push_back(weight);
+    }
+    finish_row(*rows, volume[r], region);
+  }
+  for (const auto& [ends, value] : compliance) rows->compliance.push_back({ends.first, ends.second, value});
+  if (corner_nodes) *corner_nodes = nodes;
+  return rows;
+}
+
+}  // namespace isochor

@@ -1,0 +1,42 @@
+// Rows over the volume functions of a solid: per element, per node, whole set. Mixed pressures are their
+// multipliers.
+#pragma once
+
+#include "engine/elements/solid_pool.h"
+
+namespace isochor {
+
+// What the rows of one region are made from.
+struct VolumeRegion {
+  std::string name;  // for reports
+  Index stencil_pool = -1;
+  const SolidPool* pool = nullptr;
+  int corners = 4;           // the first `corners` nodes of a stencil carry the linear pressure
+  double inverse_bulk = 0;   // 1/kappa [1/Pa]; 0: hard rows
+  double shear_modulus = 1;  // mu [Pa], for the row metric and the stabilization
+};
+
+// Base of the family: targets are zero, the volume at rest.
+class VolumeRows : public RowPool {
+ public:
+  explicit VolumeRows(std::string name) : name_(std::move(name)) {}
+  std::string_view name() const override { return name_; }
+
+ protected:
+  std::string name_;
+};
+
+// One row an element: phi_e = integral of Phi over the element, C = V/kappa.
+std::shared_ptr<RowPool> element_volume_rows(const VolumeRegion& region);
+
+// One row a node of the region: phi_i = integral of N_i Phi with N_i linear (Frâncu et al. 2021, eq. for the
+// mixed P1-P1 element). C = M_p/kappa with the consistent mass matrix M_p, plus the polynomial-projection
+// stabilization (tau/mu) (M_e - V/16 11^T) of Dohrmann & Bochev 2004 when tau > 0; its rows sum to zero, so
+// the total volume is not affected. `corner_nodes` returns the global nodes the rows stand for.
+std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double tau,
+                                           std::vector<Index>* corner_nodes = nullptr);
+
+// One row over all stencils of the region: phi = volume integral of Phi, C = V/kappa.
+std::shared_ptr<RowPool> total_volume_row(const VolumeRegion& region);
+
+}  // namespace isochor

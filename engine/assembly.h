@@ -1,0 +1,52 @@
+// Evaluates the stencils of a system into their slots and sums the slots in fixed order. All memory is taken
+// once, at construction; a call allocates nothing.
+#pragma once
+
+#include "engine/parallel.h"
+#include "engine/system.h"
+
+namespace isochor {
+
+class Assembly {
+ public:
+  Assembly(std::shared_ptr<const System> system, const Parallel& parallel);
+
+  const System& system() const { return *system_; }
+
+  // Evaluates all pools at x with the multipliers of compliant and prescribed rows, up to `want`.
+  void evaluate(Want want, Definiteness definiteness, std::span<const Vec3> x, std::span<const double> lambda,
+                std::span<const double> prescribed);
+
+  // The following read the last evaluation.
+  double energy() const;                                    // sum over stencils [J], fixed order
+  double absolute_energy() const;                           // sum of magnitudes, for rounding estimates
+  void row_values(std::span<double> phi) const;             // compliant rows
+  void prescribed_row_values(std::span<double> phi) const;  // prescribed rows
+  void residual(std::span<Vec3> r) const;                   // per node: d(energy + lambda . phi)/dx
+  void residual_magnitude(std::span<double> r) const;       // per node: sum of |contributions|
+  void constraint_force(std::span<const double> lambda, std::span<Vec3> r) const;  // G^T lambda
+  // y = H v over all nodes, given ones included (Want::hessian).
+  void hessian_times(std::span<const Vec3> v, std::span<Vec3> y);
+  // y = G v over compliant rows.
+  void jacobian_times(std::span<const Vec3> v, std::span<double> y) const;
+
+  // Values of the saddle-point matrix in kkt() order: [K + mass_scale M, G^T; G, -C] (Want::hessian).
+  void kkt_values(double mass_scale, std::span<double> values) const;
+
+  // Multipliers of the functions of one stencil pool at the last evaluation (Want::gradient or more).
+  std::span<const double> function_multipliers(Index pool) const;
+
+  std::size_t memory_bytes() const;
+
+ private:
+  void gather_block(std::int64_t block, Mat3& sum) const;
+
+  std::shared_ptr<const System> system_;
+  const Parallel& parallel_;
+  std::vector<double> energy_, value_, multiplier_;
+  std::vector<Vec3> gradient_, jacobian_;
+  std::vector<Mat3> hessian_;
+  std::vector<Vec3> product_;  // per gradient slot, for hessian_times
+};
+
+}  // namespace isochor

@@ -1,0 +1,66 @@
+#include "engine/elements/element_guard.h"
+
+namespace isochor {
+
+namespace {
+
+// One lane that is below the threshold.
+void evaluate_lane(Want want, const PointBatch& points, ResponseBatch& r, int l, double b, double J,
+                   double threshold, const double g[9]) {
+  if (!(J > 0)) {
+    r.psi[l] = std::numeric_limits<double>::infinity();
+    return;
+  }
+  const double q = std::log(J / threshold);
+  r.psi[l] = -b * q * q * q;
+  if (want == Want::value) return;
+  const double first = -3 * b * q * q / J;
+  const double second = -3 * b * (2 * q - q * q) / (J * J);
+  for (int i = 0; i < 9; ++i) r.P[i][l] = first * g[i];
+  if (want != Want::hessian) return;
+  int k = 0;
+  for (int i = 0; i < 9; ++i) {
+    for (int j = 0; j <= i; ++j, ++k) r.A[k][l] = second * g[i] * g[j];
+  }
+  for (int i = 1; i < 3; ++i) {
+    for (int j = 0; j < i; ++j) {
+      const int m = 3 - i - j;
+      const double eps = (j + 1) % 3 == i ? -1.0 : 1.0;
+      for (int c = 0; c < 3; ++c) {
+        for (int d = 0; d < 3; ++d) {
+          if (c == d) continue;
+          const double sign = (c + 1) % 3 == d ? eps : -eps;
+          const int row = 3 * i + c, col = 3 * j + d;
+          r.A[row * (row + 1) / 2 + col][l] += sign * first * points.F[3 * m + (3 - c - d)][l];
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+void ElementGuard::evaluate(Want want, const PointBatch& points, ResponseBatch& r) const {
+  const auto& F = points.F;
+  for (int l = 0; l < kLanes; ++l) {
+    double g[9];
+    for (int i = 0; i < 3; ++i) {
+      const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+      for (int j = 0; j < 3; ++j) {
+        const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+        g[3 * i + j] = F[3 * i1 + j1][l] * F[3 * i2 + j2][l] - F[3 * i1 + j2][l] * F[3 * i2 + j1][l];
+      }
+    }
+    const double J = F[0][l] * g[0] + F[1][l] * g[1] + F[2][l] * g[2];
+    r.psi[l] = 0;
+    if (want != Want::value) {
+      for (int i = 0; i < 9; ++i) r.P[i][l] = 0;
+    }
+    if (want == Want::hessian) {
+      for (int i = 0; i < 45; ++i) r.A[i][l] = 0;
+    }
+    if (!(J >= threshold_)) evaluate_lane(want, points, r, l, b_, J, threshold_, g);
+  }
+}
+
+}  // namespace isochor

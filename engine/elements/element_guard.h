@@ -1,0 +1,24 @@
+// A barrier on single tets for edge-smoothed bodies, whose patches and nodal rows do not see one tet turn
+// over.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "engine/material.h"
+
+namespace isochor {
+
+// psi = -stiffness log^3(J / threshold) for J < threshold and exactly zero above: twice continuously
+// differentiable, infinite at J = 0.
+class ElementGuard final : public Material {
+ public:
+  ElementGuard(double stiffness, double threshold) : b_(stiffness), threshold_(threshold) {}
+  std::string_view name() const override { return "element_guard"; }
+  void evaluate(Want want, const PointBatch& points, ResponseBatch& response) const override;
+
+ private:
+  double b_, threshold_;
+};
+
+}  // namespace isochor

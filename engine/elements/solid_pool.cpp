@@ -1,0 +1,260 @@
+#include "engine/elements/solid_pool.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+namespace isochor {
+
+// One point of one stencil on its way through a batch.
+struct SolidPool::Lane {
+  Index stencil = 0;
+  int point = 0;
+  double F[9] = {};
+  double volume_strain = 0;  // J - 1 without cancellation
+};
+
+namespace {
+
+constexpr std::size_t packed(std::size_t i, std::size_t j) {
+  return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i;
+}
+
+// dJ/dF, row-major.
+void cofactor(const double F[9], double g[9]) {
+  g[0] = F[4] * F[8] - F[5] * F[7];
+  g[1] = F[5] * F[6] - F[3] * F[8];
+  g[2] = F[3] * F[7] - F[4] * F[6];
+  g[3] = F[2] * F[7] - F[1] * F[8];
+  g[4] = F[0] * F[8] - F[2] * F[6];
+  g[5] = F[1] * F[6] - F[0] * F[7];
+  g[6] = F[1] * F[5] - F[2] * F[4];
+  g[7] = F[2] * F[3] - F[0] * F[5];
+  g[8] = F[0] * F[4] - F[1] * F[3];
+}
+
+// Adds s * d2J/dF2 to a packed 9x9: the entry of (i k)(j l) is eps_ijm eps_kln F_mn.
+void add_volume_hessian(const double F[9], double s, double A[45]) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::size_t m = 3 - i - j;
+      const double eps_ijm = (j + 1) % 3 == i ? -1.0 : 1.0;  // (i, j, m) with i > j
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t l = 0; l < 3; ++l) {
+          if (k == l) continue;
+          const std::size_t n = 3 - k - l;
+          const double eps_kln = (k + 1) % 3 == l ? 1.0 : -1.0;
+          A[packed(3 * i + k, 3 * j + l)] += s * eps_ijm * eps_kln * F[3 * m + n];
+        }
+      }
+    }
+  }
+}
+
+// Raises negative eigenvalues of a packed symmetric 9x9 to zero.
+void project(double A[45]) {
+  using Mat9 = Eigen::Matrix<double, 9, 9>;
+  Mat9 full;
+  for (std::size_t i = 0; i < 9; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      full(static_cast<int>(i), static_cast<int>(j)) = A[packed(i, j)];
+      full(static_cast<int>(j), static_cast<int>(i)) = A[packed(i, j)];
+    }
+  }
+  if (!full.allFinite()) return;
+  const Eigen::SelfAdjointEigenSolver<Mat9> eigen(full);
+  if (eigen.eigenvalues()(0) >= 0) return;
+  const Mat9 fixed = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+                     eigen.eigenvectors().transpose();
+  for (std::size_t i = 0; i < 9; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) A[packed(i, j)] = fixed(static_cast<int>(i), static_cast<int>(j));
+  }
+}
+
+struct VolumeResponse {
+  double value, first, second;  // Phi and its derivatives with respect to J
+};
+
+VolumeResponse volume_response(VolumeStrain strain, double j_minus_1) {
+  if (strain == VolumeStrain::linear) return {j_minus_1, 1, 0};
+  const double J = 1 + j_minus_1;
+  if (J <= 0) return {-std::numeric_limits<double>::infinity(), 0, 0};
+  return {std::log1p(j_minus_1), 1 / J, -1 / (J * J)};
+}
+
+}  // namespace
+
+SolidPool::SolidPool(std::string name, SolidData data, std::shared_ptr<const Material> material,
+                     VolumeStrain strain)
+    : name_(std::move(name)), material_(std::move(material)), strain_(strain), data_(std::move(data)) {
+  nodes_ = data_.nodes;
+  finish_topology();
+}
+
+double SolidPool::volume(Index stencil) const {
+  double v = 0;
+  for (int q = 0; q < data_.points; ++q) v += data_.weight[at(stencil * data_.points + q)];
+  return v;
+}
+
+void SolidPool::deformation_gradient(Index stencil, int point, std::span<const Vec3> x,
+                                     std::span<const Vec3> rest, double F[9], double& volume_strain) const {
+  const auto nodes = nodes_[stencil];
+  const Vec3* B = data_.gradient.data() +
+                  static_cast<std::size_t>(data_.points) * at(nodes_.offset[at(stencil)]) +
+                  static_cast<std::size_t>(point) * nodes.size();
+  // Displacements against the first node: exact at rest and under translation, and J - 1 keeps all its
+  // digits.
+  double h[9] = {};
+  const Vec3 u0 = x[at(nodes[0])] - rest[at(nodes[0])];
+  for (std::size_t a = 1; a < nodes.size(); ++a) {
+    const Vec3 u = x[at(nodes[a])] - rest[at(nodes[a])] - u0;
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) h[3 * i + k] += u[i] * B[a][k];
+    }
+  }
+  double c[9];
+  cofactor(h, c);
+  const double trace = h[0] + h[4] + h[8];
+  const double second = c[0] + c[4] + c[8];
+  const double third = h[0] * c[0] + h[1] * c[1] + h[2] * c[2];
+  volume_strain = trace + second + third;
+  for (int i = 0; i < 9; ++i) F[i] = h[i] + (i % 4 == 0 ? 1.0 : 0.0);
+}
+
+void SolidPool::evaluate(const StencilRequest& request, const StencilSlots& slots) const {
+  const std::size_t functions = static_cast<std::size_t>(data_.functions);
+  const bool gradient = request.want != Want::value;
+  for (Index s = request.begin; s < request.end; ++s) {
+    const std::size_t n = nodes_[s].size();
+    const auto first = at(nodes_.offset[at(s)]);
+    slots.energy[at(s)] = 0;
+    std::fill_n(slots.value.begin() + static_cast<std::ptrdiff_t>(at(s) * functions), functions, 0.0);
+    if (!gradient) continue;
+    std::fill_n(slots.gradient.begin() + static_cast<std::ptrdiff_t>(first), n, Vec3{});
+    std::fill_n(slots.jacobian.begin() + static_cast<std::ptrdiff_t>(first * functions), n * functions,
+                Vec3{});
+    if (request.want == Want::hessian) {
+      std::fill_n(slots.hessian.begin() + hessian_offset()[at(s)], n * (n + 1) / 2, Mat3{});
+    }
+  }
+  Lane lanes[kLanes];
+  int count = 0;
+  for (Index s = request.begin; s < request.end; ++s) {
+    for (int q = 0; q < data_.points; ++q) {
+      Lane& lane = lanes[count++];
+      lane.stencil = s;
+      lane.point = q;
+      deformation_gradient(s, q, request.x, request.rest, lane.F, lane.volume_strain);
+      if (count == kLanes) {
+        flush(request, slots, lanes, count);
+        count = 0;
+      }
+    }
+  }
+  if (count > 0) flush(request, slots, lanes, count);
+}
+
+void SolidPool::flush(const StencilRequest& request, const StencilSlots& slots, Lane* lanes,
+                      int count) const {
+  ResponseBatch response;
+  if (material_) {
+    PointBatch batch;
+    for (int l = 0; l < kLanes; ++l) {
+      const Lane& lane = lanes[std::min(l, count - 1)];
+      for (int i = 0; i < 9; ++i) batch.F[i][l] = lane.F[i];
+      batch.element[l] = lane.stencil;
+    }
+    material_->evaluate(request.want, batch, response);
+  }
+  for (int l = 0; l < count; ++l) {
+    double P[9] = {}, A[45] = {};
+    const double psi = material_ ? response.psi[l] : 0;
+    if (material_ && request.want != Want::value) {
+      for (int i = 0; i < 9; ++i) P[i] = response.P[i][l];
+      if (request.want == Want::hessian) {
+        for (int i = 0; i < 45; ++i) A[i] = response.A[i][l];
+      }
+    }
+    write(request, slots, lanes[l], psi, P, A);
+  }
+}
+
+namespace {
+
+// hessian block (a, b) += w B_a A B_b for all b <= a, with the 9x9 A of one point.
+void contract(const double A[45], double w, const Vec3* B, std::size_t n, Mat3* blocks) {
+  // Regrouped so that the inner loops run over contiguous numbers: by_l[l][k][i][j] = w A[(i k)(j l)].
+  double by_l[3][27];
+  for (std::size_t l = 0; l < 3; ++l) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = 0; j < 3; ++j) by_l[l][9 * k + 3 * i + j] = w * A[packed(3 * i + k, 3 * j + l)];
+      }
+    }
+  }
+  for (std::size_t b = 0; b < n; ++b) {
+    double t[27];
+    for (std::size_t e = 0; e < 27; ++e)
+      t[e] = by_l[0][e] * B[b].x + by_l[1][e] * B[b].y + by_l[2][e] * B[b].z;
+    for (std::size_t a = b; a < n; ++a) {
+      double* block = blocks[a * (a + 1) / 2 + b].m.data();
+      for (std::size_t e = 0; e < 9; ++e) block[e] += B[a].x * t[e] + B[a].y * t[9 + e] + B[a].z * t[18 + e];
+    }
+  }
+}
+
+}  // namespace
+
+void SolidPool::write(const StencilRequest& request, const StencilSlots& slots, const Lane& lane, double psi,
+                      const double* P_material, const double* A_material) const {
+  const Index s = lane.stencil;
+  const double w = data_.weight[at(s * data_.points + lane.point)];
+  slots.energy[at(s)] += w * psi;
+  const std::size_t functions = static_cast<std::size_t>(data_.functions);
+  const double* N = data_.shape.data() + static_cast<std::size_t>(lane.point) * functions;
+  VolumeResponse phi{};
+  double sigma = 0;  // multiplier of the volume strain at this point
+  if (functions > 0) {
+    phi = volume_response(strain_, lane.volume_strain);
+    for (std::size_t k = 0; k < functions; ++k) {
+      slots.value[at(s) * functions + k] += w * N[k] * phi.value;
+      if (request.want != Want::value) sigma += N[k] * request.function_multiplier[at(s) * functions + k];
+    }
+  }
+  if (request.want == Want::value) return;
+
+  const std::size_t n = nodes_[s].size();
+  const auto first = at(nodes_.offset[at(s)]);
+  const Vec3* B = data_.gradient.data() + static_cast<std::size_t>(data_.points) * first +
+                  static_cast<std::size_t>(lane.point) * n;
+  double P[9], g[9] = {};
+  if (functions > 0) cofactor(lane.F, g);
+  for (int i = 0; i < 9; ++i) P[i] = P_material[i] + sigma * phi.first * g[i];
+  for (std::size_t a = 0; a < n; ++a) {
+    slots.gradient[first + a] +=
+        w * Vec3{P[0] * B[a].x + P[1] * B[a].y + P[2] * B[a].z, P[3] * B[a].x + P[4] * B[a].y + P[5] * B[a].z,
+                 P[6] * B[a].x + P[7] * B[a].y + P[8] * B[a].z};
+  }
+  for (std::size_t a = 0; functions > 0 && a < n; ++a) {
+    const Vec3 d = (w * phi.first) * Vec3{g[0] * B[a].x + g[1] * B[a].y + g[2] * B[a].z,
+                                          g[3] * B[a].x + g[4] * B[a].y + g[5] * B[a].z,
+                                          g[6] * B[a].x + g[7] * B[a].y + g[8] * B[a].z};
+    for (std::size_t k = 0; k < functions; ++k) slots.jacobian[first * functions + k * n + a] += N[k] * d;
+  }
+  if (request.want != Want::hessian) return;
+
+  double A[45];
+  std::copy_n(A_material, 45, A);
+  if (sigma != 0) {
+    add_volume_hessian(lane.F, sigma * phi.first, A);
+    if (phi.second != 0) {
+      for (std::size_t i = 0; i < 9; ++i) {
+        for (std::size_t j = 0; j <= i; ++j) A[packed(i, j)] += sigma * phi.second * g[i] * g[j];
+      }
+    }
+  }
+  if (request.definiteness == Definiteness::projected) project(A);
+  contract(A, w, B, n, slots.hessian.data() + hessian_offset()[at(s)]);
+}
+
+}  // namespace isochor

@@ -1,0 +1,56 @@
+// Stencils whose value depends on deformation gradients at points: F_q = sum_a x_a (x) B_qa. Tets, hexahedra
+// and the patches of edge-smoothed tets differ only in how many nodes and points a stencil has.
+#pragma once
+
+#include "engine/material.h"
+#include "engine/pool.h"
+
+namespace isochor {
+
+// The strain that a volume function measures.
+enum class VolumeStrain : std::uint8_t {
+  linear,       // J - 1
+  logarithmic,  // log J; its multiplier is J times the pressure
+};
+
+// Rest data of solid stencils. All stencils of a set have the same number of points.
+struct SolidData {
+  Lists nodes;
+  int points = 1;
+  std::vector<Vec3> gradient;  // B: for stencil s, point q: points * nodes.offset[s] + q * n + a  [1/m]
+  std::vector<double> weight;  // rest volume of a point: points a stencil [m^3]
+  int functions = 0;           // volume functions a stencil: integral of N_k Phi(J)
+  std::vector<double> shape;   // N_k at the points: [q * functions + k], the same for every stencil
+  std::vector<Index> cell;     // cell of the mesh that a stencil stands for (first one for patches)
+};
+
+class SolidPool final : public StencilPool {
+ public:
+  // `material` may be null: volume functions alone. Energies are integrated over the points.
+  SolidPool(std::string name, SolidData data, std::shared_ptr<const Material> material, VolumeStrain strain);
+
+  std::string_view name() const override { return name_; }
+  bool has_energy() const override { return material_ != nullptr; }
+  int functions() const override { return data_.functions; }
+  void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
+
+  const SolidData& data() const { return data_; }
+  // Rest volume of a stencil [m^3].
+  double volume(Index stencil) const;
+  // F at the points of a stencil.
+  void deformation_gradient(Index stencil, int point, std::span<const Vec3> x, std::span<const Vec3> rest,
+                            double F[9], double& volume_strain) const;
+
+ private:
+  struct Lane;
+  void flush(const StencilRequest& request, const StencilSlots& slots, Lane* lanes, int count) const;
+  void write(const StencilRequest& request, const StencilSlots& slots, const Lane& lane, double psi,
+             const double* P, const double* A) const;
+
+  std::string name_;
+  std::shared_ptr<const Material> material_;
+  VolumeStrain strain_;
+  SolidData data_;
+};
+
+}  // namespace isochor

@@ -1,0 +1,81 @@
+// The life of a sparse symmetric indefinite solver: structure once, values many times, and a report each
+// time.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "isochor/types.h"
+
+namespace isochor {
+
+// Lower triangle (diagonal included) of a symmetric matrix, compressed by columns, rows ascending in each
+// column.
+struct SymmetricPattern {
+  Index size = 0;
+  std::vector<std::int64_t> column_start;  // size + 1
+  std::vector<Index> row;                  // column_start[size]
+  // Unknowns that belong together (the coordinates and the pressure row of one node, say) share a group; the
+  // ordering is computed on groups, which is faster and keeps a row behind the unknowns it constrains.
+  std::vector<Index> group;  // size entries, 0 .. groups-1
+  Index groups = 0;
+  // Optional (empty or size entries): 1 for a multiplier row, whose diagonal may be zero and whose pivot is
+  // expected to be negative. The ordering keeps such a row behind an unknown that it constrains, and the
+  // backends without pivoting know from it which way to regularise. Without it, the rows with a diagonal <= 0
+  // are taken for that.
+  std::vector<std::uint8_t> multiplier;
+
+  std::int64_t nonzeros() const { return column_start.empty() ? 0 : column_start.back(); }
+};
+
+enum class FactorStatus : std::uint8_t { ok, singular, not_finite, out_of_memory, failed };
+
+struct FactorReport {
+  FactorStatus status = FactorStatus::ok;
+  Index negative_pivots = -1;        // -1: this backend cannot tell
+  std::int64_t factor_nonzeros = 0;  // entries of L
+  std::string message;               // empty when ok
+};
+
+struct SolveReport {
+  bool ok = false;
+  double residual = 0;  // ||b - A x||_inf / (||A||_inf ||x||_inf + ||b||_inf), after refinement
+  int refinements = 0;
+};
+
+class LinearSolver {
+ public:
+  virtual ~LinearSolver() = default;
+  virtual std::string_view name() const = 0;
+  // Ordering and symbolic work, once a topology. The pattern must outlive the solver's use of it.
+  virtual FactorReport analyze(const SymmetricPattern& pattern) = 0;
+  // Numeric factorisation of the values that belong to the analysed pattern.
+  virtual FactorReport factor(std::span<const double> values) = 0;
+  // Solves with iterative refinement against the values last factored (which must still be alive and
+  // unchanged).
+  virtual SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) = 0;
+};
+
+enum class SolverKind : std::uint8_t { automatic, mumps, cholmod, eigen };
+
+// The backend asked for, or the best one built in for a system of this size. Null when the backend is not
+// part of this build.
+std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, Index size);
+
+// The backends of this build with their licences, for `isochor version`.
+struct SolverBackend {
+  std::string name, version, licence;
+};
+std::vector<SolverBackend> linear_solver_backends();
+
+// Threads of the BLAS under the solvers, for the whole process: how many there are decides the last bits of a
+// factor, so it is a setting of its own, never taken from the engine's thread count. The first solver made
+// sets it to 1 unless it was set before. False: the BLAS in this process offers no way to say it.
+bool set_blas_threads(int threads);
+int blas_threads();  // 0: unknown
+
+}  // namespace isochor

@@ -1,0 +1,27 @@
+// What a body asks of a material: its energy with or without the volume part, and the small-strain numbers
+// that the rows need.
+#pragma once
+
+#include <memory>
+
+#include "engine/material.h"
+
+namespace isochor {
+
+class MaterialModel {
+ public:
+  virtual ~MaterialModel() = default;
+  virtual std::string_view name() const = 0;
+  // Energy without the volumetric part, for use with volume rows.
+  virtual std::shared_ptr<const Material> distortional() const = 0;
+  // One-field energy; refused where it does not exist (nu = 0.5).
+  virtual Result<std::shared_ptr<const Material>> complete() const = 0;
+  virtual double shear_modulus() const = 0;  // mu_L [Pa]
+  virtual double inverse_bulk()
+      const = 0;                       // 1/kappa of the volume rows [1/Pa]; 0: incompressible; inf: no rows
+  virtual double poisson() const = 0;  // small-strain nu
+  virtual double young() const = 0;    // small-strain E [Pa]
+  virtual bool defined_inverted() const = 0;  // finite energy for J <= 0
+};
+
+}  // namespace isochor

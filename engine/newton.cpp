@@ -1,0 +1,501 @@
+#include "engine/newton.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace isochor {
+
+namespace {
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& total) : total_(total), start_(std::chrono::steady_clock::now()) {}
+  ~Stopwatch() { total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  double& total_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+double norm(const Vec3& v) {
+  return std::sqrt(dot(v, v));
+}
+bool finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool all_finite(const NewtonProblem& p) {
+  const auto ok = [](double v) { return std::isfinite(v); };
+  return std::all_of(p.force.begin(), p.force.end(), finite) &&
+         std::all_of(p.position.begin(), p.position.end(), finite) &&
+         std::all_of(p.target.begin(), p.target.end(), ok) &&
+         std::all_of(p.prescribed.begin(), p.prescribed.end(), ok) && std::isfinite(p.mass_scale) &&
+         (p.mass_scale == 0 || std::all_of(p.predicted.begin(), p.predicted.end(), finite));
+}
+
+// y += alpha * C v over the compliance entries.
+void add_compliance(const System& s, double alpha, std::span<const double> v, std::span<double> y) {
+  for (const ComplianceEntry& e : s.compliance()) {
+    y[at(e.row)] += alpha * e.value * v[at(e.col)];
+    if (e.row != e.col) y[at(e.col)] += alpha * e.value * v[at(e.row)];
+  }
+}
+
+double compliance_energy(const System& s, std::span<const double> v) {
+  double sum = 0;
+  for (const ComplianceEntry& e : s.compliance()) {
+    const double product = e.value * v[at(e.row)] * v[at(e.col)];
+    sum += e.row == e.col ? 0.5 * product : product;
+  }
+  return sum;
+}
+
+// Where the parabola through the start, its slope and one value has its minimum.
+double parabola_minimum(double tau, double start, double slope, double value) {
+  const double curvature = value - start - slope * tau;
+  return curvature > 0 ? -0.5 * slope * tau * tau / curvature : 3 * tau;
+}
+
+}  // namespace
+
+std::string_view to_string(NewtonStatus status) {
+  switch (status) {
+    case NewtonStatus::converged:
+      return "converged";
+    case NewtonStatus::iteration_limit:
+      return "iteration limit reached";
+    case NewtonStatus::line_search_failed:
+      return "line search found no descent";
+    case NewtonStatus::singular:
+      return "saddle-point matrix is singular";
+    case NewtonStatus::diverged:
+      return "positions diverged";
+    case NewtonStatus::not_finite:
+      return "not a finite number";
+    case NewtonStatus::cancelled:
+      return "cancelled";
+    case NewtonStatus::out_of_memory:
+      return "out of memory";
+  }
+  return "unknown";
+}
+
+StageSeconds& StageSeconds::operator+=(const StageSeconds& o) {
+  analyze += o.analyze;
+  evaluate += o.evaluate;
+  gather += o.gather;
+  factor += o.factor;
+  solve += o.solve;
+  line_search += o.line_search;
+  return *this;
+}
+
+Newton::Newton(std::shared_ptr<const System> system, const Parallel& parallel,
+               std::unique_ptr<LinearSolver> solver)
+    : system_(std::move(system)),
+      parallel_(parallel),
+      solver_(std::move(solver)),
+      assembly_(system_, parallel) {
+  const System& s = *system_;
+  const std::size_t n = at(s.nodes()), m = at(s.rows()), size = at(s.kkt().size);
+  values_.resize(static_cast<std::size_t>(s.kkt().nonzeros()));
+  scale_.resize(size);
+  rhs_.resize(size);
+  solution_.resize(size);
+  theta_.resize(m);
+  row_work_.resize(m);
+  lambda_new_.resize(m);
+  lambda_trial_.resize(m);
+  prescribed_phi_.resize(at(s.prescribed_rows()));
+  stiffness_.resize(n);
+  magnitude_.resize(n);
+  first_stiffness_.assign(n, 0);
+  r_.resize(n);
+  dx_.resize(n);
+  gap_.resize(n);
+  node_work_.resize(n);
+  x_trial_.resize(n);
+  reaction_.resize(n);
+}
+
+double Newton::potential(const NewtonProblem& p, std::span<const Vec3> x) const {
+  const System& s = *system_;
+  double inertia = 0, work = 0, pressure = 0;
+  const auto& rest = s.parts().rest;
+  for (std::size_t i = 0; i < x.size(); ++i) work += dot(p.force[i], x[i] - rest[i]);
+  if (p.mass_scale > 0) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const Vec3 d = x[i] - p.predicted[i];
+      inertia += s.parts().mass[i] * dot(d, d);
+    }
+  }
+  for (std::size_t r = 0; r < prescribed_phi_.size(); ++r) pressure += p.prescribed[r] * prescribed_phi_[r];
+  return assembly_.energy() + 0.5 * p.mass_scale * inertia - work + pressure;
+}
+
+// Size of the numbers that cancel in the potential: what its rounding error is relative to.
+double Newton::potential_magnitude(const NewtonProblem& p, std::span<const Vec3> x) const {
+  double sum = assembly_.absolute_energy();
+  const auto& rest = system_->parts().rest;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec3 u = x[i] - rest[i];
+    sum += norm(p.force[i]) * norm(u);
+    sum += stiffness_[i] * norm(u) * 1e-3 * system_->length() * 1e-3;
+    if (p.mass_scale > 0) {
+      const Vec3 d = x[i] - p.predicted[i];
+      sum += 0.5 * p.mass_scale * system_->parts().mass[i] * dot(d, d);
+    }
+  }
+  for (std::size_t r = 0; r < prescribed_phi_.size(); ++r)
+    sum += std::abs(p.prescribed[r] * prescribed_phi_[r]);
+  return sum;
+}
+
+// Residuals of the last evaluation: r = dE/dx + G^T lambda over all nodes, theta = phi - target - C lambda.
+void Newton::assemble_residual(const NewtonProblem& p, std::span<const Vec3> x,
+                               std::span<const double> lambda) {
+  const System& s = *system_;
+  assembly_.residual(r_);
+  assembly_.residual_magnitude(magnitude_);
+  for (std::size_t i = 0; i < r_.size(); ++i) {
+    r_[i] -= p.force[i];
+    magnitude_[i] += norm(p.force[i]);
+    if (p.mass_scale > 0) {
+      const double c = p.mass_scale * s.parts().mass[i];
+      const Vec3 f = c * (x[i] - p.predicted[i]);
+      r_[i] += f;
+      magnitude_[i] += norm(f);
+    }
+  }
+  assembly_.row_values(theta_);
+  for (std::size_t r = 0; r < theta_.size(); ++r) theta_[r] -= p.target[r];
+  add_compliance(s, -1, lambda, theta_);
+  assembly_.prescribed_row_values(prescribed_phi_);
+}
+
+Newton::Residuals Newton::measure(const NewtonProblem& p, std::span<const Vec3> x) const {
+  const System& s = *system_;
+  double force = 0, reference = 0, row = 0, position = 0;
+  const double floor = 1e-6 * s.length();
+  for (Index i = 0; i < s.nodes(); ++i) {
+    const double k = std::max(stiffness_[at(i)], first_stiffness_[at(i)]);
+    if (k <= 0) continue;
+    Vec3 free = r_[at(i)];
+    const Index b = s.basis_of()[at(i)];
+    if (b >= 0) {
+      const FreeBasis& basis = s.free_bases()[at(b)];
+      const Vec3 q = transposed_times(basis.directions, free);
+      double sum = 0;
+      for (int c = 0; c < basis.count; ++c) sum += q[c] * q[c];
+      force += sum / k;
+    } else {
+      force += dot(free, free) / k;
+    }
+    const double size = std::max(magnitude_[at(i)], k * floor);
+    reference += size * size / k;
+  }
+  for (std::size_t r = 0; r < theta_.size(); ++r)
+    row = std::max(row, std::abs(theta_[r]) / s.row_measure()[r]);
+  if (s.has_prescribers()) {
+    for (Index i = 0; i < s.nodes(); ++i) {
+      const Index b = s.basis_of()[at(i)];
+      if (b < 0) continue;
+      const FreeBasis& basis = s.free_bases()[at(b)];
+      const Vec3 q = transposed_times(basis.directions, p.position[at(b)] - x[at(i)]);
+      for (int c = basis.count; c < 3; ++c) position = std::max(position, std::abs(q[c]));
+    }
+  }
+  const double relative = reference > 0 ? std::sqrt(force / reference) : 0;
+  return {relative, row, s.length() > 0 ? position / s.length() : position};
+}
+
+bool Newton::small(const Residuals& r, const NewtonOptions& o) const {
+  return r.force <= o.force_tolerance && r.row <= o.row_tolerance && r.position <= o.position_tolerance;
+}
+
+void Newton::position_gap(const NewtonProblem& p, std::span<const Vec3> x) {
+  has_gap_ = false;
+  const System& s = *system_;
+  std::fill(gap_.begin(), gap_.end(), Vec3{});
+  if (!s.has_prescribers()) return;
+  for (Index i = 0; i < s.nodes(); ++i) {
+    const Index b = s.basis_of()[at(i)];
+    if (b < 0) continue;
+    const FreeBasis& basis = s.free_bases()[at(b)];
+    Vec3 q = transposed_times(basis.directions, p.position[at(b)] - x[at(i)]);
+    for (int c = 0; c < basis.count; ++c) q[c] = 0;
+    gap_[at(i)] = basis.directions * q;
+    if (dot(gap_[at(i)], gap_[at(i)]) > 0) has_gap_ = true;
+  }
+}
+
+// Assembles and factors; mends a wrong inertia first by projecting the stencils' Hessians, then by shifting.
+bool Newton::factor(const NewtonProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
+                    NewtonReport& report) {
+  if (factor_shifted(p.mass_scale, 0, report)) return true;
+  if (report.status == NewtonStatus::out_of_memory) return false;
+  {
+    const Stopwatch watch(seconds_.evaluate);
+    assembly_.evaluate(Want::hessian, Definiteness::projected, x, lambda, p.prescribed);
+  }
+  ++report.projected;
+  if (factor_shifted(p.mass_scale, 0, report)) return true;
+  ++report.shifted;
+  for (double shift = 1e-6; shift < 1e3; shift *= 30) {
+    if (report.status == NewtonStatus::out_of_memory) return false;
+    if (factor_shifted(p.mass_scale, shift, report)) return true;
+  }
+  report.status = NewtonStatus::singular;
+  return false;
+}
+
+bool Newton::factor_shifted(double mass_scale, double shift, NewtonReport& report) {
+  const System& s = *system_;
+  {
+    const Stopwatch watch(seconds_.gather);
+    assembly_.kkt_values(mass_scale, values_);
+    const auto first = s.first_unknown();
+    for (Index i = 0; i < s.nodes(); ++i) {
+      double k = 0;
+      for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
+        k = std::max(k, std::abs(values_[static_cast<std::size_t>(s.diagonal_place()[at(c)])]));
+      }
+      if (first[at(i)] == first[at(i) + 1]) k = first_stiffness_[at(i)];
+      stiffness_[at(i)] = k;
+      if (first_stiffness_[at(i)] == 0) first_stiffness_[at(i)] = k;
+      const double reference = std::max(k, 0.01 * first_stiffness_[at(i)]);
+      for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
+        scale_[at(c)] = reference > 0 ? 1 / std::sqrt(reference) : 1;
+        values_[static_cast<std::size_t>(s.diagonal_place()[at(c)])] += shift * reference;
+      }
+    }
+    for (Index r = 0; r < s.rows(); ++r)
+      scale_[at(s.free_unknowns() + r)] = 1 / std::sqrt(s.row_metric()[at(r)]);
+    const SymmetricPattern& kkt = s.kkt();
+    parallel_.run(kkt.size, 1024, [&](Index b, Index e) {
+      for (Index c = b; c < e; ++c) {
+        const auto to = static_cast<std::size_t>(kkt.column_start[at(c) + 1]);
+        for (auto k = static_cast<std::size_t>(kkt.column_start[at(c)]); k < to; ++k) {
+          values_[k] *= scale_[at(c)] * scale_[at(kkt.row[k])];
+        }
+      }
+    });
+  }
+  if (!analyzed_) {
+    const Stopwatch watch(seconds_.analyze);
+    const FactorReport f = solver_->analyze(s.kkt());
+    ++analyses_;
+    if (f.status != FactorStatus::ok) {
+      report.status =
+          f.status == FactorStatus::out_of_memory ? NewtonStatus::out_of_memory : NewtonStatus::singular;
+      report.message = f.message;
+      return false;
+    }
+    analyzed_ = true;
+  }
+  const Stopwatch watch(seconds_.factor);
+  const FactorReport f = solver_->factor(values_);
+  ++report.factorizations;
+  factor_nonzeros_ = f.factor_nonzeros;
+  report.negative_pivots = f.negative_pivots;
+  if (f.status == FactorStatus::out_of_memory) {
+    report.status = NewtonStatus::out_of_memory;
+    report.message = f.message;
+  }
+  if (f.status != FactorStatus::ok) return false;
+  return f.negative_pivots < 0 || f.negative_pivots == s.rows();
+}
+
+// Solves for (dx, dlambda); prescribed coordinates move by their whole gap.
+bool Newton::direction(std::span<const double> lambda, NewtonReport& report) {
+  const System& s = *system_;
+  const auto first = s.first_unknown();
+  if (has_gap_) {
+    assembly_.hessian_times(gap_, node_work_);
+    assembly_.jacobian_times(gap_, row_work_);
+  } else {
+    std::fill(node_work_.begin(), node_work_.end(), Vec3{});
+    std::fill(row_work_.begin(), row_work_.end(), 0.0);
+  }
+  for (Index i = 0; i < s.nodes(); ++i) {
+    Vec3 q = -(r_[at(i)] + node_work_[at(i)]);
+    const Index b = s.basis_of()[at(i)];
+    if (b >= 0) q = transposed_times(s.free_bases()[at(b)].directions, q);
+    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) rhs_[at(c)] = scale_[at(c)] * q[c - first[at(i)]];
+  }
+  const Index free = s.free_unknowns();
+  for (Index r = 0; r < s.rows(); ++r) {
+    rhs_[at(free + r)] = -scale_[at(free + r)] * (theta_[at(r)] + row_work_[at(r)]);
+  }
+  SolveReport solved;
+  {
+    const Stopwatch watch(seconds_.solve);
+    solved = solver_->solve(rhs_, solution_);
+  }
+  report.linear_residual = solved.residual;
+  for (Index i = 0; i < s.nodes(); ++i) {
+    Vec3 q{};
+    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c)
+      q[c - first[at(i)]] = scale_[at(c)] * solution_[at(c)];
+    const Index b = s.basis_of()[at(i)];
+    dx_[at(i)] = (b >= 0 ? s.free_bases()[at(b)].directions * q : q) + gap_[at(i)];
+  }
+  for (Index r = 0; r < s.rows(); ++r) {
+    lambda_new_[at(r)] = lambda[at(r)] + scale_[at(free + r)] * solution_[at(free + r)];
+  }
+  return solved.ok && std::all_of(dx_.begin(), dx_.end(), finite);
+}
+
+// Slope of the merit along the direction; raises gamma until it is safely negative. Also leaves the reactions
+// of prescribed coordinates in reaction_.
+double Newton::merit_slope(std::span<const double> lambda) {
+  const System& s = *system_;
+  double q = 0, theta_norm = 0, gap_norm = 0;
+  for (std::size_t i = 0; i < dx_.size(); ++i) q -= dot(dx_[i], r_[i]);
+  for (std::size_t r = 0; r < theta_.size(); ++r) {
+    q += theta_[r] * (lambda_new_[r] - lambda[r]);
+    theta_norm += theta_[r] * theta_[r] / s.row_metric()[r];
+  }
+  if (has_gap_) {
+    // r + H dx + G^T dlambda + reaction = 0 at the given directions.
+    assembly_.hessian_times(dx_, node_work_);
+    for (std::size_t r = 0; r < row_work_.size(); ++r) row_work_[r] = lambda_new_[r] - lambda[r];
+    assembly_.constraint_force(row_work_, reaction_);
+    for (std::size_t i = 0; i < dx_.size(); ++i) {
+      reaction_[i] = -(r_[i] + node_work_[i] + reaction_[i]);
+      q -= dot(reaction_[i], gap_[i]);
+      gap_norm += std::max(stiffness_[i], first_stiffness_[i]) * dot(gap_[i], gap_[i]);
+    }
+  }
+  const double penalty = theta_norm + gap_norm;
+  while (q + gamma_ * penalty < 0.1 * gamma_ * penalty && gamma_ < 1e12) gamma_ *= 4;
+  return -q - gamma_ * penalty;
+}
+
+// Merit at the trial point held in the assembly, tau along the direction.
+double Newton::merit(const NewtonProblem& p, double tau, std::span<const double> lambda_trial) const {
+  const System& s = *system_;
+  double sum = potential(p, x_trial_) + compliance_energy(s, lambda_trial);
+  for (std::size_t r = 0; r < theta_.size(); ++r) {
+    sum += lambda_new_[r] * theta_[r] + 0.5 * gamma_ * theta_[r] * theta_[r] / s.row_metric()[r];
+  }
+  if (has_gap_) {
+    for (std::size_t i = 0; i < dx_.size(); ++i) {
+      const Vec3 left = (tau - 1) * gap_[i];
+      sum += dot(reaction_[i], left) +
+             0.5 * gamma_ * std::max(stiffness_[i], first_stiffness_[i]) * dot(left, left);
+    }
+  }
+  return sum;
+}
+
+// Moves the trial point to tau along the direction and evaluates there.
+double Newton::try_step(const NewtonProblem& p, double tau, std::span<const Vec3> x,
+                        std::span<const double> lambda, NewtonReport& report) {
+  const Stopwatch watch(seconds_.line_search);
+  ++report.trials;
+  for (std::size_t i = 0; i < x.size(); ++i) x_trial_[i] = x[i] + tau * dx_[i];
+  for (std::size_t r = 0; r < lambda.size(); ++r) {
+    lambda_trial_[r] = lambda[r] + tau * (lambda_new_[r] - lambda[r]);
+  }
+  assembly_.evaluate(Want::gradient, Definiteness::exact, x_trial_, lambda_trial_, p.prescribed);
+  assemble_residual(p, x_trial_, lambda_trial_);
+  return merit(p, tau, lambda_trial_);
+}
+
+// Backtracking to sufficient decrease; a shortened step is then polished by up to two parabolas, because
+// evaluations cost a few percent of the factorization that a better step saves.
+bool Newton::search(const NewtonProblem& p, std::span<Vec3> x, std::span<double> lambda,
+                    NewtonReport& report) {
+  const System& s = *system_;
+  const double slope = merit_slope(lambda);
+  std::copy(x.begin(), x.end(), x_trial_.begin());
+  const double start = merit(p, 0, lambda);
+  const double noise = 1e-13 * (potential_magnitude(p, x) + std::abs(start));
+  const Residuals before = measure(p, x);
+  double longest = 0;
+  for (const Vec3& d : dx_) longest = std::max(longest, norm(d));
+  double tau = longest > 100 * s.length() ? 100 * s.length() / longest : 1;
+  double value = 0;
+  bool accepted = false;
+  for (int trial = 0; trial < 40 && tau > 1e-10; ++trial) {
+    value = try_step(p, tau, x, lambda, report);
+    if (std::isfinite(value)) {
+      accepted = value <= start + 1e-4 * tau * slope;
+      // Where the decrease drowns in rounding, the residual decides.
+      if (!accepted && std::abs(tau * slope) < 10 * noise && value <= start + 10 * noise) {
+        const Residuals after = measure(p, x_trial_);
+        accepted = after.force <= before.force || after.force < 1e-7;
+      }
+      if (accepted) break;
+      tau = std::clamp(parabola_minimum(tau, start, slope, value), 0.1 * tau, 0.5 * tau);
+    } else {
+      tau *= 0.5;
+    }
+  }
+  if (!accepted) return false;
+  for (int polish = 0; polish < 2 && tau < 1; ++polish) {
+    const double next =
+        std::min(1.0, std::clamp(parabola_minimum(tau, start, slope, value), 0.3 * tau, 3 * tau));
+    if (std::abs(next - tau) < 0.15 * tau) break;
+    const double other = try_step(p, next, x, lambda, report);
+    if (!(other < value)) {
+      try_step(p, tau, x, lambda, report);
+      break;
+    }
+    value = other;
+    tau = next;
+  }
+  std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
+  std::copy(lambda_trial_.begin(), lambda_trial_.end(), lambda.begin());
+  report.step = tau * longest;
+  return true;
+}
+
+NewtonReport Newton::solve(const NewtonProblem& p, const NewtonOptions& options, std::span<Vec3> x,
+                           std::span<double> lambda) {
+  NewtonReport report;
+  const auto fail = [&](NewtonStatus status) {
+    report.status = status;
+    return report;
+  };
+  if (!all_finite(p)) return fail(NewtonStatus::not_finite);
+  gamma_ = 0.1;
+  const System& s = *system_;
+  const Vec3 origin = s.nodes() > 0 ? s.parts().rest[0] : Vec3{};
+  for (int iteration = 0;; ++iteration) {
+    {
+      const Stopwatch watch(seconds_.evaluate);
+      assembly_.evaluate(Want::hessian, Definiteness::exact, x, lambda, p.prescribed);
+      assemble_residual(p, x, lambda);
+    }
+    if (iteration == 0 && !std::isfinite(assembly_.energy())) return fail(NewtonStatus::not_finite);
+    position_gap(p, x);
+    if (cancelled && cancelled()) return fail(NewtonStatus::cancelled);
+    if (iteration > options.max_iterations) return fail(NewtonStatus::iteration_limit);
+    if (!factor(p, x, lambda, report))
+      return fail(report.status == NewtonStatus::converged ? NewtonStatus::singular : report.status);
+    if (iteration == 0) {
+      // Stiffness is known only now; a state that is already in balance stays to the last bit.
+      const Residuals now = measure(p, x);
+      report.force_residual = now.force;
+      report.row_residual = now.row;
+      if (small(now, options)) return report;
+    }
+    if (!direction(lambda, report)) return fail(NewtonStatus::singular);
+    ++report.iterations;
+    if (!search(p, x, lambda, report)) return fail(NewtonStatus::line_search_failed);
+    const Residuals now = measure(p, x);
+    report.force_residual = now.force;
+    report.row_residual = now.row;
+    if (progress) progress(report.iterations, now.force, now.row);
+    if (small(now, options)) return report;
+    for (const Vec3& xi : x) {
+      const Vec3 d = xi - origin;
+      if (!(dot(d, d) <= 1e8 * s.length() * s.length())) return fail(NewtonStatus::diverged);
+    }
+  }
+}
+
+}  // namespace isochor

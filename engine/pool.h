@@ -1,0 +1,137 @@
+// The extension points of the engine. An effect is stencils (smooth functions of a few nodes), rows (weighted
+// sums of stencil functions with a law), eliminated coordinates, and loads. The engine never asks what an
+// effect is.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "engine/base.h"
+
+namespace isochor {
+
+// What evaluate() is asked, for stencils [begin, end) of the pool.
+struct StencilRequest {
+  Want want = Want::value;
+  Definiteness definiteness = Definiteness::exact;
+  Index begin = 0, end = 0;
+  std::span<const Vec3> x;                      // positions of all nodes [m]
+  std::span<const Vec3> rest;                   // rest positions of all nodes [m]
+  std::span<const double> function_multiplier;  // functions() a stencil: sum over rows of weight * multiplier
+};
+
+// Where the answers go: spans over the whole pool. Stencil s owns its own places and nothing else, so
+// stencils can be evaluated in any order by any thread. `first` = nodes.offset[s], n = its number of nodes, K
+// = functions().
+struct StencilSlots {
+  std::span<double> energy;  // [s] energy [J]; +infinity outside the domain (an inverted neo-Hookean tet)
+  std::span<double> value;   // [s * K + k] function values
+  std::span<Vec3> gradient;  // [first + a] d(energy + sum_k multiplier_k * function_k)/dx_a
+  std::span<Vec3> jacobian;  // [first * K + k * n + a] dfunction_k/dx_a
+  std::span<Mat3>
+      hessian;  // [hessian_offset(s) + a (a + 1) / 2 + b], b <= a: second derivative of the same sum
+};
+
+// All stencils of one kind, contiguous. Pure: evaluation reads rest data and positions, writes slots, nothing
+// else.
+class StencilPool {
+ public:
+  virtual ~StencilPool() = default;
+  virtual std::string_view name() const = 0;
+  const Lists& nodes() const { return nodes_; }
+  Index stencils() const { return nodes_.count(); }
+  virtual bool has_energy() const = 0;
+  virtual int functions() const = 0;  // K >= 0
+  virtual bool has_hessian() const { return true; }
+  virtual void evaluate(const StencilRequest& request, const StencilSlots& slots) const = 0;
+
+  // Offsets of each stencil's packed Hessian blocks, in blocks; filled by finish_topology().
+  std::span<const std::int64_t> hessian_offset() const { return hessian_offset_; }
+  // Stencils per parallel task.
+  virtual Index grain() const { return 256; }
+
+ protected:
+  // Call once nodes_ is complete.
+  void finish_topology() {
+    hessian_offset_.assign(1, 0);
+    for (Index s = 0; s < nodes_.count(); ++s) {
+      const std::int64_t n = static_cast<std::int64_t>(nodes_[s].size());
+      hessian_offset_.push_back(hessian_offset_.back() + n * (n + 1) / 2);
+    }
+  }
+  Lists nodes_;
+
+ private:
+  std::vector<std::int64_t> hessian_offset_;
+};
+
+// How the multiplier of a row comes about.
+enum class RowLaw : std::uint8_t {
+  compliant,   // phi - target - C lambda = 0, lambda is an unknown; C = 0 is a hard row
+  prescribed,  // lambda is given (a pressure in pascal); the row is no unknown and enters as a load
+};
+
+struct ComplianceEntry {
+  Index row = 0, col = 0;  // row >= col, both inside the pool
+  double value = 0;
+};
+
+// Rows of one effect over the functions of one stencil pool: phi_r = sum_i weight_i * function_i.
+class RowPool {
+ public:
+  virtual ~RowPool() = default;
+  virtual std::string_view name() const = 0;
+
+  Index rows() const { return map.count(); }
+
+  Index stencil_pool = -1;     // which pool's functions; stencil * K + k numbers a function
+  Lists map;                   // per row: function numbers
+  std::vector<double> weight;  // parallel to map.item
+  RowLaw law = RowLaw::compliant;
+  std::vector<ComplianceEntry> compliance;  // lower triangle; none: hard
+  // Row metric D > 0: phi^2 / D is an energy of the size that distortion costs (shear modulus times volume
+  // for a volume row). It weighs the rows in the merit function and scales the linear system; the solution
+  // does not depend on it.
+  std::vector<double> metric;
+  // What |phi - target - C lambda| is compared with to decide convergence, in the unit of phi (a volume).
+  std::vector<double> measure;
+
+  // Targets (compliant) or multipliers (prescribed) at time t, one a row.
+  virtual void update(double t, std::span<double> value) const {
+    (void)t;
+    for (double& v : value) v = 0;
+  }
+};
+
+// Coordinates that are given: removed from the unknowns, their forces recovered as reactions.
+struct PrescribedNode {
+  Index node = -1;
+  int directions = 0;  // 1..3 orthonormal directions in which the node is given
+  std::array<Vec3, 3> direction{};
+};
+
+class Prescriber {
+ public:
+  virtual ~Prescriber() = default;
+  virtual std::string_view name() const = 0;
+  std::vector<PrescribedNode> nodes;
+  // Target positions at time t, one for each entry of nodes; only the given directions of it count.
+  virtual void target(double t, std::span<Vec3> position) const = 0;
+};
+
+// Forces that do not depend on positions (gravity, dead tractions): potential -f . x.
+class LoadPool {
+ public:
+  virtual ~LoadPool() = default;
+  virtual std::string_view name() const = 0;
+  virtual void add(double t, std::span<Vec3> force) const = 0;  // adds newtons to all nodes of the scene
+};
+
+// A named number that an effect reports beside the state (a chamber's pressure and volume).
+struct GaugeValue {
+  std::string effect, kind, quantity, unit;
+  double value = 0;
+};
+
+}  // namespace isochor

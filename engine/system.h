@@ -1,0 +1,102 @@
+// The compiled, immutable form of a scene: what the stepper reads. It holds only what the scene calls for.
+#pragma once
+
+#include "engine/linear_solver.h"
+#include "engine/pool.h"
+
+namespace isochor {
+
+// What an author's scene hands over to compile().
+struct SystemParts {
+  std::vector<Vec3> rest;    // [m]
+  std::vector<double> mass;  // lumped, one a node [kg]
+  std::vector<std::shared_ptr<const StencilPool>> stencil_pools;
+  std::vector<std::shared_ptr<const RowPool>> row_pools;
+  std::vector<std::shared_ptr<const Prescriber>> prescribers;
+  std::vector<std::shared_ptr<const LoadPool>> loads;
+};
+
+// Where a pool's slots begin in the arrays over all pools.
+struct PoolPlace {
+  Index energy = 0;
+  std::int64_t function = 0, gradient = 0, jacobian = 0, hessian = 0;
+};
+
+// For every destination the sources that add up to it, in fixed order.
+struct Gather {
+  std::vector<std::int64_t> offset{0};
+  std::vector<std::int64_t> source;
+  std::vector<double> weight;  // empty: all 1
+
+  std::int64_t count() const { return static_cast<std::int64_t>(offset.size()) - 1; }
+};
+
+// A node that is not free in all directions.
+struct FreeBasis {
+  int count = 3;    // free directions
+  Mat3 directions;  // columns 0..count-1 are the free directions, the others the given ones
+};
+
+class System {
+ public:
+  // Builds patterns and gather lists. Fails with a message when parts contradict each other.
+  static Result<std::shared_ptr<const System>> compile(SystemParts parts);
+
+  const SystemParts& parts() const { return parts_; }
+  Index nodes() const { return static_cast<Index>(parts_.rest.size()); }
+  Index free_unknowns() const { return first_unknown_.back(); }
+  Index rows() const { return rows_; }                        // compliant: unknowns of the system
+  Index prescribed_rows() const { return prescribed_rows_; }  // their multipliers are data
+  std::uint64_t layout() const { return layout_; }
+  double length() const { return length_; }  // diagonal of the rest bounding box [m]
+
+  const SymmetricPattern& kkt() const { return kkt_; }
+  std::span<const PoolPlace> places() const { return places_; }
+  const PoolPlace& totals() const { return totals_; }
+  std::span<const Index> first_unknown() const { return first_unknown_; }
+  // Index into free_bases() or -1 for a node that is free in all directions.
+  std::span<const Index> basis_of() const { return basis_of_; }
+  std::span<const FreeBasis> free_bases() const { return bases_; }
+
+  // Rows of all compliant pools, then of all prescribed ones, share this numbering of the gather lists.
+  const Gather& row_gather() const { return row_gather_; }            // row <- function slots
+  const Gather& function_gather() const { return function_gather_; }  // function <- rows
+  const Gather& residual_gather() const { return residual_gather_; }  // node <- gradient slots
+  const Gather& block_gather() const { return block_gather_; }  // node pair <- Hessian slots, ~s: transposed
+  const Gather& jacobian_gather() const { return jacobian_gather_; }  // (row, node) <- Jacobian slots
+
+  // Places in kkt() of the first row of each column of a block; three a block, -1 beyond the free columns.
+  std::span<const std::int64_t> block_place() const { return block_place_; }
+  std::span<const std::int64_t> jacobian_place() const { return jacobian_place_; }
+  std::span<const std::array<Index, 2>> block_nodes() const { return block_nodes_; }
+  std::span<const std::array<Index, 2>> jacobian_ends() const { return jacobian_ends_; }  // row, node
+
+  std::span<const ComplianceEntry> compliance() const { return compliance_; }  // system rows
+  std::span<const std::int64_t> compliance_place() const { return compliance_place_; }
+  std::span<const double> row_metric() const { return row_metric_; }
+  std::span<const double> row_measure() const { return row_measure_; }
+  std::span<const std::int64_t> diagonal_place() const { return diagonal_place_; }
+
+  // First row of a row pool in its numbering: compliant rows, or prescribed rows.
+  Index first_row(Index row_pool) const { return first_row_[at(row_pool)]; }
+  bool has_prescribers() const { return !parts_.prescribers.empty(); }
+
+ private:
+  friend class SystemCompiler;
+  SystemParts parts_;
+  Index rows_ = 0, prescribed_rows_ = 0;
+  std::uint64_t layout_ = 0;
+  double length_ = 0;
+  SymmetricPattern kkt_;
+  std::vector<PoolPlace> places_;
+  PoolPlace totals_;
+  std::vector<Index> first_unknown_, basis_of_, first_row_;
+  std::vector<FreeBasis> bases_;
+  Gather row_gather_, function_gather_, residual_gather_, block_gather_, jacobian_gather_;
+  std::vector<std::int64_t> block_place_, jacobian_place_, compliance_place_, diagonal_place_;
+  std::vector<std::array<Index, 2>> block_nodes_, jacobian_ends_;
+  std::vector<ComplianceEntry> compliance_;
+  std::vector<double> row_metric_, row_measure_;
+};
+
+}  // namespace isochor

@@ -1,0 +1,45 @@
+// What is behind World. Not a public header.
+#pragma once
+
+#include <atomic>
+
+#include "engine/builder.h"
+#include "engine/newton.h"
+#include "engine/time_scheme.h"
+#include "isochor/world.h"
+
+namespace isochor {
+
+struct World::Impl {
+  WorldOptions options;
+  std::unique_ptr<TbbParallel> parallel;
+  Builder builder;
+  std::vector<EffectPtr> sources;
+  std::vector<std::unique_ptr<EffectInstance>> instances;
+  std::vector<std::vector<Index>> held_by;  // nodes given by each effect
+  std::shared_ptr<const System> system;
+  std::unique_ptr<Newton> newton;
+  State state;
+  std::string compile_error;
+  std::atomic<bool> cancel_requested{false};
+  std::function<void(const ProgressInfo&)> progress;
+
+  // Data of the increment under way; taken once, at compile time.
+  std::vector<Vec3> x_trial, predicted, force, position, reactions;
+  std::vector<double> weight, lambda_trial, target, prescribed;  // weight: consistent nodal mass [kg]
+
+  bool compiled() const { return newton != nullptr; }
+  Result<void> compile();
+  Result<void> compile_once();
+  void collect_supports();
+  void allocate();
+  void begin_amounts(double t0, double t1);
+  void evaluate_data(double t);
+  NewtonReport attempt(double h);
+  StepReport invalid(std::string reason) const;
+  void finish_report(StepReport& report, const StageSeconds& before, double total) const;
+  // Evaluates forces and multipliers at the state.
+  void evaluate_state(Want want);
+};
+
+}  // namespace isochor

@@ -1,0 +1,265 @@
+// What a host reads from a world.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "engine/recovery.h"
+#include "engine/world_impl.h"
+
+namespace isochor {
+
+void World::Impl::evaluate_state(Want want) {
+  evaluate_data(state.t);
+  newton->assembly().evaluate(want, Definiteness::exact, state.x, state.lambda, prescribed);
+}
+
+double World::time() const {
+  return impl_->state.t;
+}
+
+namespace {
+
+std::span<const Vec3> part(const BodyData& body, const std::vector<Vec3>& all) {
+  return {all.data() + body.first_node, at(body.mesh.node_count())};
+}
+
+}  // namespace
+
+std::span<const Vec3> World::positions(BodyId body) const {
+  const BodyData& b = impl_->builder.body(body);
+  return impl_->compiled() ? part(b, impl_->state.x) : std::span<const Vec3>(b.mesh.nodes);
+}
+
+std::span<const Vec3> World::velocities(BodyId body) const {
+  if (!impl_->compiled()) return {};
+  return part(impl_->builder.body(body), impl_->state.v);
+}
+
+std::span<const Vec3> World::rest_positions(BodyId body) const {
+  return impl_->builder.body(body).mesh.nodes;
+}
+const Mesh& World::mesh(BodyId body) const {
+  return impl_->builder.body(body).mesh;
+}
+const std::string& World::body_name(BodyId body) const {
+  return impl_->builder.body(body).name;
+}
+Index World::body_count() const {
+  return impl_->builder.body_count();
+}
+const std::vector<std::string>& World::warnings() const {
+  return impl_->builder.warnings();
+}
+
+BodyMeasures World::measures(BodyId body) const {
+  Impl& w = *impl_;
+  if (!w.compile()) return {};
+  const BodyData& b = w.builder.body(body);
+  BodyMeasures m = measure_body(b, w.system->parts(), w.state.x);
+  // Volume that the compliance grants: the sum of C lambda over the volume rows of the body. A body with
+  // one-field elements grants itself whatever it does.
+  double allowed = 0;
+  std::vector<double> strain(at(w.system->rows()), 0);
+  for (const ComplianceEntry& e : w.system->compliance()) {
+    strain[at(e.row)] += e.value * w.state.lambda[at(e.col)];
+    if (e.row != e.col) strain[at(e.col)] += e.value * w.state.lambda[at(e.row)];
+  }
+  bool rows_everywhere = true;
+  for (const RegionData& region : b.regions) {
+    if (region.volume_pool[0] < 0) rows_everywhere = false;
+  }
+  if (!rows_everywhere) return m;
+  const auto& pools = w.system->parts().row_pools;
+  for (std::size_t p = 0; p < pools.size(); ++p) {
+    const bool of_body = pools[p]->law == RowLaw::compliant &&
+                         std::any_of(b.regions.begin(), b.regions.end(), [&](const RegionData& r) {
+                           return r.volume_pool[0] == pools[p]->stencil_pool;
+                         });
+    if (!of_body) continue;
+    const auto first = at(w.system->first_row(static_cast<Index>(p)));
+    for (std::size_t r = 0; r < at(pools[p]->rows()); ++r) allowed += strain[first + r];
+  }
+  m.volume_error = std::abs(m.volume - m.rest_volume - allowed) / m.rest_volume;
+  return m;
+}
+
+BodyFields World::fields(BodyId body) const {
+  Impl& w = *impl_;
+  if (!w.compile()) return {};
+  w.evaluate_state(Want::gradient);
+  const SystemParts& parts = w.system->parts();
+  std::vector<std::span<const double>> multipliers;
+  for (Index p = 0; p < static_cast<Index>(parts.stencil_pools.size()); ++p) {
+    multipliers.push_back(w.newton->assembly().function_multipliers(p));
+  }
+  std::vector<double> nodal(parts.rest.size(), std::nan(""));
+  for (const auto& instance : w.instances) instance->node_multipliers({*w.system, w.state}, nodal);
+  return recover_fields({w.builder.body(body), parts, w.state.x, multipliers, nodal});
+}
+
+std::vector<Gauge> World::gauges() const {
+  std::vector<Gauge> out;
+  if (!impl_->compile()) return out;
+  for (const auto& instance : impl_->instances) instance->gauges({*impl_->system, impl_->state}, out);
+  return out;
+}
+
+std::array<Vec3, 2> World::reaction(EffectId effect) const {
+  std::array<Vec3, 2> sum{};
+  Impl& w = *impl_;
+  const auto i = static_cast<std::size_t>(effect);
+  if (!w.compile() || i >= w.held_by.size()) return sum;
+  for (const Index node : w.held_by[i]) {
+    const Index b = w.system->basis_of()[at(node)];
+    if (b < 0) continue;
+    const FreeBasis& basis = w.system->free_bases()[at(b)];
+    Vec3 q = transposed_times(basis.directions, w.reactions[at(node)]);
+    for (int c = 0; c < basis.count; ++c) q[c] = 0;
+    const Vec3 f = basis.directions * q;
+    sum[0] += f;
+    sum[1] += cross(w.state.x[at(node)], f);
+  }
+  return sum;
+}
+
+double World::elastic_energy() const {
+  Impl& w = *impl_;
+  if (!w.compile()) return 0;
+  w.evaluate_state(Want::value);
+  double energy = w.newton->assembly().energy();
+  for (const ComplianceEntry& e : w.system->compliance()) {
+    const double product = e.value * w.state.lambda[at(e.row)] * w.state.lambda[at(e.col)];
+    energy += e.row == e.col ? 0.5 * product : product;
+  }
+  return energy;
+}
+
+double World::kinetic_energy() const {
+  double energy = 0;
+  if (!impl_->compiled()) return energy;
+  const auto& mass = impl_->system->parts().mass;
+  for (std::size_t i = 0; i < mass.size(); ++i)
+    energy += 0.5 * mass[i] * dot(impl_->state.v[i], impl_->state.v[i]);
+  return energy;
+}
+
+double World::constitutive_residual() const {
+  Impl& w = *impl_;
+  if (!w.compile()) return 0;
+  w.evaluate_state(Want::value);
+  std::vector<double> theta(at(w.system->rows()));
+  w.newton->assembly().row_values(theta);
+  for (std::size_t r = 0; r < theta.size(); ++r) theta[r] -= w.target[r];
+  for (const ComplianceEntry& e : w.system->compliance()) {
+    theta[at(e.row)] -= e.value * w.state.lambda[at(e.col)];
+    if (e.row != e.col) theta[at(e.col)] -= e.value * w.state.lambda[at(e.row)];
+  }
+  double worst = 0;
+  for (std::size_t r = 0; r < theta.size(); ++r)
+    worst = std::max(worst, std::abs(theta[r]) / w.system->row_measure()[r]);
+  return worst;
+}
+
+WorldSize World::size() const {
+  WorldSize s;
+  Impl& w = *impl_;
+  if (!w.compile()) return s;
+  s.nodes = w.system->nodes();
+  s.displacement_unknowns = w.system->free_unknowns();
+  s.multipliers = w.system->rows();
+  s.matrix_nonzeros = w.system->kkt().nonzeros();
+  s.factor_nonzeros = w.newton->factor_nonzeros();
+  s.engine_bytes = w.newton->assembly().memory_bytes();
+  return s;
+}
+
+std::uint64_t World::state_hash() const {
+  return impl_->state.hash();
+}
+
+namespace {
+
+constexpr std::uint64_t kSaveMagic = 0x31726f68636f7369ull;  // "isochor1"
+
+template <class T>
+void put(std::vector<std::byte>& out, const T* data, std::size_t count) {
+  const auto* p = reinterpret_cast<const std::byte*>(data);
+  out.insert(out.end(), p, p + count * sizeof(T));
+}
+
+template <class T>
+bool take(std::span<const std::byte>& in, T* data, std::size_t count) {
+  if (in.size() < count * sizeof(T)) return false;
+  std::memcpy(data, in.data(), count * sizeof(T));
+  in = in.subspan(count * sizeof(T));
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::byte> World::save() const {
+  std::vector<std::byte> out;
+  Impl& w = *impl_;
+  if (!w.compile()) return out;
+  std::vector<double> amounts;
+  for (const auto& instance : w.instances) {
+    if (const Amount* a = instance->amount()) a->save(amounts);
+  }
+  const std::uint64_t sizes[5] = {w.state.x.size(), w.state.lambda.size(), w.state.extra.size(),
+                                  amounts.size(), w.reactions.size()};
+  put(out, &kSaveMagic, 1);
+  put(out, &w.state.layout, 1);
+  put(out, sizes, 5);
+  put(out, &w.state.t, 1);
+  put(out, w.state.x.data(), w.state.x.size());
+  put(out, w.state.v.data(), w.state.v.size());
+  put(out, w.state.lambda.data(), w.state.lambda.size());
+  put(out, w.state.extra.data(), w.state.extra.size());
+  put(out, amounts.data(), amounts.size());
+  put(out, w.reactions.data(), w.reactions.size());
+  return out;
+}
+
+Result<void> World::load(std::span<const std::byte> bytes) {
+  Impl& w = *impl_;
+  if (auto r = w.compile(); !r) return r;
+  std::uint64_t magic = 0, layout = 0, sizes[5] = {};
+  if (!take(bytes, &magic, 1) || magic != kSaveMagic) {
+    return Error{"load: these bytes are no saved state of a world (wrong first eight bytes)"};
+  }
+  if (!take(bytes, &layout, 1) || layout != w.system->layout()) {
+    return Error{
+        "load: the state was saved from another scene or mesh; load it into a world built the same way"};
+  }
+  if (!take(bytes, sizes, 5) || sizes[0] != w.state.x.size() || sizes[1] != w.state.lambda.size() ||
+      sizes[3] > bytes.size() || sizes[2] > bytes.size() || sizes[4] != w.reactions.size()) {
+    return Error{"load: the saved state is damaged (sizes do not fit this scene)"};
+  }
+  // Read everything before anything is replaced.
+  State next;
+  next.layout = layout;
+  next.x.resize(sizes[0]);
+  next.v.resize(sizes[0]);
+  next.lambda.resize(sizes[1]);
+  next.extra.resize(sizes[2]);
+  std::vector<double> amounts(sizes[3]);
+  std::vector<Vec3> reactions(sizes[4]);
+  if (!take(bytes, &next.t, 1) || !take(bytes, next.x.data(), sizes[0]) ||
+      !take(bytes, next.v.data(), sizes[0]) || !take(bytes, next.lambda.data(), sizes[1]) ||
+      !take(bytes, next.extra.data(), sizes[2]) || !take(bytes, amounts.data(), sizes[3]) ||
+      !take(bytes, reactions.data(), sizes[4]) || !bytes.empty()) {
+    return Error{"load: the saved state is truncated or too long"};
+  }
+  std::span<const double> rest(amounts);
+  std::size_t with_amount = 0;
+  for (const auto& instance : w.instances) with_amount += instance->amount() ? 1 : 0;
+  if (amounts.size() != 7 * with_amount) return Error{"load: the saved state belongs to other effects"};
+  for (const auto& instance : w.instances) {
+    if (Amount* a = instance->amount()) a->load(rest);
+  }
+  w.state = std::move(next);
+  w.reactions = std::move(reactions);
+  return {};
+}
+
+}  // namespace isochor

@@ -1,0 +1,104 @@
+// Constraints, supports and loads. Each function makes an effect for World::add; bad parameters are reported
+// there.
+#pragma once
+
+#include "isochor/world.h"
+
+namespace isochor {
+
+// Nodes (or faces) of a body, by one or several criteria; what fits any of them is selected.
+struct Selection {
+  BodyId body{};
+  std::vector<std::string> surfaces, regions, node_sets;
+  std::vector<Index> nodes;                // indices into the body's mesh
+  std::vector<std::array<Vec3, 2>> boxes;  // lower and upper corner [m], rest positions
+  std::vector<Vec3> nearest;               // the node nearest to each point
+  bool everything = false;
+};
+
+// ---- volume
+// ----------------------------------------------------------------------------------------------------
+
+enum class VolumeSpace : std::uint8_t { node, element, body };
+enum class VolumeStrainKind : std::uint8_t { linear, logarithmic };  // J - 1, log J
+
+struct VolumeDef {
+  std::string name = "volume";
+  BodyId body{};
+  VolumeSpace space = VolumeSpace::node;
+  VolumeStrainKind strain = VolumeStrainKind::linear;
+  // Regions it covers; empty: all. `node` and `element` rows are split at interfaces between regions.
+  std::vector<std::string> regions;
+  // Dohrmann-Bochev stabilization of nodal rows on linear tets; ignored where inf-sup holds. 0: off.
+  double stabilization = 1;
+  // Rows with C = 0 whatever the material says.
+  bool hard = false;
+  // True: these rows carry the bulk modulus and the elements keep only the distortional energy. False: the
+  // rows come on top of other rows or of the complete one-field energy.
+  bool carries_bulk = true;
+};
+EffectPtr volume(VolumeDef def);
+
+// ---- supports
+// ----------------------------------------------------------------------------------------------------
+
+// Prescribed positions, eliminated from the unknowns; reactions are reported.
+struct DirichletDef {
+  std::string name = "fixed";
+  Selection where;
+  // Directions that are given; empty: all three. Need not be orthogonal or unit length.
+  std::vector<Vec3> directions;
+  // Displacement [m] at amount 1, and a rotation [rad] about an axis at amount 1; both zero: held in place.
+  Vec3 displacement{};
+  Vec3 axis_point{}, axis{};
+  double angle = 0;
+  // Scales displacement and angle over time.
+  Curve amount = Curve::constant(1);
+};
+EffectPtr dirichlet(DirichletDef def);
+
+// ---- loads
+// -------------------------------------------------------------------------------------------------------
+
+// Dead traction [Pa] on faces (force per rest area), or a dead total force [N] spread over them.
+struct TractionDef {
+  std::string name = "traction";
+  BodyId body{};
+  std::string surface;
+  Vec3 traction{};     // [Pa]
+  Vec3 total_force{};  // [N], instead of traction
+  Curve amount = Curve::constant(1);
+};
+EffectPtr traction(TractionDef def);
+
+// Dead force [N], shared equally by the selected nodes.
+struct PointForceDef {
+  std::string name = "force";
+  Selection where;
+  Vec3 force{};
+  Curve amount = Curve::constant(1);
+};
+EffectPtr point_force(PointForceDef def);
+
+// ---- cavity
+// ------------------------------------------------------------------------------------------------------
+
+enum class CavityControl : std::uint8_t {
+  pressure,      // amount: gauge pressure [Pa], positive inflates; follows the surface
+  volume,        // amount: volume [m^3]; the pressure is the multiplier
+  volume_ratio,  // amount: volume over rest volume
+};
+
+struct CavityDef {
+  std::string name = "cavity";
+  BodyId body{};
+  std::vector<std::string> surfaces;  // faces that bound the cavity; their winding does not matter
+  CavityControl control = CavityControl::pressure;
+  Curve amount = Curve::ramp(0);
+  // Openings are closed by virtual caps: flat fans over each boundary loop of the surface. A loop that is not
+  // wholly on a support is refused unless this is set, since nothing real would hold the pressure there.
+  bool cap_free_openings = false;
+};
+EffectPtr cavity(CavityDef def);
+
+}  // namespace isochor

@@ -1,0 +1,22 @@
+// Small generators for structured meshes, used by scenes and tests.
+#pragma once
+
+#include <array>
+
+#include "isochor/mesh.h"
+
+namespace isochor {
+
+// A box of nx * ny * nz cells cut into six tets each (Kuhn), all diagonals parallel. Surfaces "x0", "x1",
+// "y0", "y1", "z0", "z1" are its sides; its one region is "body".
+struct BoxMeshDef {
+  Vec3 lower{0, 0, 0}, upper{1, 1, 1};  // [m]
+  std::array<int, 3> divisions{1, 1, 1};
+  CellType cell_type = CellType::tet4;
+};
+Result<Mesh> box_mesh(const BoxMeshDef& def);
+
+// A Tet10 mesh on the same corners, with straight edges. A Tet10 mesh is returned as it is.
+Mesh to_tet10(const Mesh& mesh);
+
+}  // namespace isochor

@@ -1,0 +1,203 @@
+// The facade a host embeds: build a scene from bodies and effects, advance it, read positions without
+// copying.
+//
+// Nothing here throws. Worlds are independent of each other; one world is used by one thread at a time,
+// except for cancel(), which any thread may call.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "isochor/materials.h"
+#include "isochor/mesh.h"
+
+namespace isochor {
+
+class EffectSource;  // engine-side
+class TimeScheme;    // engine-side
+
+// A constraint, load or support, made by the functions of <isochor/effects.h>. Resolved when the world is
+// compiled.
+using EffectPtr = std::shared_ptr<const EffectSource>;
+// Made by the functions of <isochor/schemes.h>.
+using SchemePtr = std::shared_ptr<const TimeScheme>;
+
+enum class BodyId : Index {};
+enum class EffectId : Index {};
+
+// A quantity over time (seconds; in statics the load factor): piecewise linear through the points, constant
+// outside.
+struct Curve {
+  std::vector<std::array<double, 2>> points;  // (time, value), times ascending
+  static Curve constant(double value) { return {{{0, value}}}; }
+  static Curve ramp(double value, double end = 1) { return {{{0, 0}, {end, value}}}; }
+};
+double evaluate(const Curve& curve, double t);
+
+// How the distortion of a body is sampled.
+enum class Element : std::uint8_t {
+  tet4,                // one energy a tet: cheapest, stiff in bending
+  tet4_edge_smoothed,  // energy on patches around edges: the default for accuracy per second
+  tet10,               // quadratic displacements; the mesh is raised to Tet10 where it is Tet4
+};
+
+struct RegionMaterial {
+  std::string region;  // empty: every region not named elsewhere
+  MaterialPtr material;
+  double density = 1000;  // [kg/m^3]
+};
+
+struct BodyDef {
+  std::string name = "body";
+  Mesh mesh;
+  Element element = Element::tet4_edge_smoothed;
+  std::vector<RegionMaterial> materials;
+  // Barrier against single tets turning over, edge-smoothed bodies only: energy -stiffness mu V
+  // log^3(J/threshold) for J < threshold. 0 switches it off. By default on for regions with nu >= 0.49.
+  std::optional<double> guard_stiffness;
+  double guard_threshold = 0.5;
+};
+
+enum class Solver : std::uint8_t { automatic, mumps, cholmod, eigen };
+
+struct WorldOptions {
+  SchemePtr scheme;  // required: implicit_euler(), statics(), ...
+  Solver solver = Solver::automatic;
+  int threads = 0;                // 0: all the machine has. The answer does not depend on it.
+  int max_iterations = 60;        // Newton iterations a step
+  double force_tolerance = 1e-9;  // unbalanced force, relative to the forces that cancel
+  double row_tolerance = 1e-10;   // relative volume (or other measure) error of a row
+  // Adaptive increments of advance(): smallest fraction of the increment asked for.
+  double smallest_fraction = 1.0 / 1024;
+  Vec3 gravity{};  // [m/s^2]; scaled by gravity_curve
+  Curve gravity_curve = Curve::constant(1);
+  std::function<void(const std::string&)> log;  // warnings; may be empty
+};
+
+enum class StepStatus : std::uint8_t { converged, rejected, cancelled, invalid };
+
+// Seconds by stage of the work done.
+struct StageTimes {
+  double analyze = 0, evaluate = 0, gather = 0, factor = 0, solve = 0, line_search = 0, total = 0;
+};
+
+struct StepReport {
+  StepStatus status = StepStatus::converged;
+  std::string reason;  // empty when converged; else one sentence
+  double time = 0;     // of the state now
+  int substeps = 0, rejected_substeps = 0;
+  int iterations = 0, factorizations = 0, trials = 0, projected = 0, shifted = 0;
+  Index negative_pivots = -1, expected_negative_pivots = 0;
+  double force_residual = 0, row_residual = 0, linear_residual = 0;
+  StageTimes seconds;
+};
+
+// A named number that an effect reports.
+struct Gauge {
+  std::string effect, kind, quantity, unit;
+  double value = 0;
+};
+
+struct WorldSize {
+  Index nodes = 0, displacement_unknowns = 0, multipliers = 0;
+  std::int64_t matrix_nonzeros = 0, factor_nonzeros = 0;
+  std::size_t engine_bytes = 0;
+};
+
+// What the deformation of a body looks like now.
+struct BodyMeasures {
+  double volume = 0, rest_volume = 0;  // [m^3]
+  double volume_error = 0;             // relative change of volume beyond what the rows' compliance allows
+  double min_J = 0, max_J = 0;         // over cells (points of a Tet10)
+};
+
+// Per-node and per-cell results of a body, recovered for output.
+struct BodyFields {
+  std::vector<double> node_pressure;  // tr(sigma)/3 [Pa], tension positive
+  std::vector<double> cell_J;
+  std::vector<double> cell_pressure;   // tr(sigma)/3 [Pa]
+  std::vector<double> cell_von_mises;  // [Pa]
+  std::vector<double> cell_stress;     // Cauchy stress xx yy zz xy yz zx [Pa], 6 a cell
+  std::vector<double> cell_max_stretch;
+};
+
+struct ProgressInfo {
+  double time = 0, target = 0;
+  int iteration = 0;
+  double force_residual = 0, row_residual = 0;
+};
+
+inline constexpr std::uint64_t kWorldAbi = 1;
+
+class World {
+ public:
+  // `abi` catches a host that was built against headers of another version.
+  static Result<World> create(WorldOptions options, std::uint64_t abi = kWorldAbi);
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+  ~World();
+
+  // Bodies and effects are added before compile(); the mesh is checked here, names are resolved in compile().
+  Result<BodyId> add_body(BodyDef body);
+  Result<EffectId> add(EffectPtr effect);
+  // Builds the system. Called by the first step when the host has not.
+  Result<void> compile();
+
+  // One increment of h seconds (statics: of load factor). A rejected step leaves the state bit for bit as it
+  // was.
+  StepReport step(double h);
+  // As many increments as it takes to advance by h: halves increments that fail, lengthens them again. On
+  // failure the state is the last one that converged and `time` says how far it got.
+  StepReport advance(double h);
+  // Stops a step that is running, from any thread: it returns `cancelled` and leaves the state untouched.
+  void cancel();
+
+  // Sets the amount of an effect (a pressure [Pa], a volume [m^3], a scale), from now on instead of its
+  // curve. In statics the next increment ramps from the old value to the new one.
+  Result<void> set_amount(EffectId effect, double amount);
+
+  double time() const;
+  // Views of the state's own numbers, valid until the next step or load().
+  std::span<const Vec3> positions(BodyId body) const;
+  std::span<const Vec3> velocities(BodyId body) const;
+  std::span<const Vec3> rest_positions(BodyId body) const;
+  // The mesh as the engine uses it (Tet10 when the element asked for it, inverted cells turned).
+  const Mesh& mesh(BodyId body) const;
+  const std::string& body_name(BodyId body) const;
+  Index body_count() const;
+
+  BodyMeasures measures(BodyId body) const;
+  BodyFields fields(BodyId body) const;
+  std::vector<Gauge> gauges() const;
+  // Sum of the support forces [N] and their moment about the origin [N m] of an effect that prescribes
+  // positions.
+  std::array<Vec3, 2> reaction(EffectId effect) const;
+  double elastic_energy() const;  // [J], distortion plus compliance
+  double kinetic_energy() const;  // [J]
+  // Largest |phi - target - C lambda| of all rows, relative to their measure.
+  double constitutive_residual() const;
+  WorldSize size() const;
+  std::uint64_t state_hash() const;
+  // What compile() noticed and took in its stride.
+  const std::vector<std::string>& warnings() const;
+
+  // Everything that survives a step. Loading into a world of the same scene continues with the same bits.
+  std::vector<std::byte> save() const;
+  Result<void> load(std::span<const std::byte> bytes);
+
+  void on_progress(std::function<void(const ProgressInfo&)> callback);
+
+ private:
+  struct Impl;
+  explicit World(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace isochor
