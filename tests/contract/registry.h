@@ -1,0 +1,55 @@
+// Every material and every effect of the engine, with what its contract test needs. A source file of
+// materials/ or constraints/ that no case covers fails contract.completeness: add a case here.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/material.h"
+#include "isochor/effects.h"
+#include "support/hyper_dual.h"
+
+namespace test {
+
+// An energy density written for numbers of any kind, independently of the engine's own formula.
+using EnergyFormula = std::function<HyperDual(const std::array<HyperDual, 9>& F)>;
+
+struct MaterialCase {
+  std::string name;
+  std::vector<std::string> covers;  // "materials/neo_hookean"
+  std::shared_ptr<const isochor::Material> material;
+  EnergyFormula energy;
+  double scale = 1;         // stiffness that errors are measured against [Pa]
+  double largest_J = 4;     // samples keep to J in (0, largest_J)
+  bool inverted = false;    // has a value for J <= 0
+  bool stress_free = true;  // P = 0 at F = 1
+};
+std::vector<MaterialCase> material_cases();
+
+// Materials by their public functions, for what they promise at small strain.
+struct ModelCase {
+  std::string name;
+  std::vector<std::string> covers;
+  std::function<isochor::Result<isochor::MaterialPtr>(const isochor::ElasticConstants&)> make;
+};
+std::vector<ModelCase> model_cases();
+
+// A small scene in which an effect's pools and rows come to life. The contract is held by every stencil pool,
+// row pool, support and load that the scene is compiled into.
+struct SceneCase {
+  std::string name;
+  std::vector<std::string> covers;
+  isochor::Mesh mesh;
+  isochor::Element element = isochor::Element::tet4;
+  std::vector<isochor::RegionMaterial> materials;
+  std::vector<isochor::EffectPtr> effects;
+  double stretch = 1;           // of the deformed sample, on top of its waves
+  bool stress_free = true;      // no force and zero rows at rest with zero multipliers
+  bool rigid_invariant = true;  // the potential does not see rigid motions
+};
+std::vector<SceneCase> scene_cases();
+
+}  // namespace test

@@ -1,0 +1,156 @@
+#include "contract/registry.h"
+#include "support/meshes.h"
+
+namespace test {
+
+namespace {
+
+using isochor::BodyId;
+using isochor::CavityControl;
+using isochor::CellType;
+using isochor::Curve;
+using isochor::Element;
+using isochor::VolumeSpace;
+using isochor::VolumeStrainKind;
+
+isochor::MaterialPtr material(double poisson) {
+  isochor::ElasticConstants c;
+  c.young = 2.6;
+  c.poisson = poisson;
+  return std::move(isochor::neo_hookean(c)).value();
+}
+
+isochor::EffectPtr volume_rows(VolumeSpace space, VolumeStrainKind strain, double stabilization = 1) {
+  isochor::VolumeDef def;
+  def.body = BodyId{0};
+  def.space = space;
+  def.strain = strain;
+  def.stabilization = stabilization;
+  return isochor::volume(def);
+}
+
+Mesh solid_mesh(Element element) {
+  const CellType type = element == Element::tet10 ? CellType::tet10 : CellType::tet4;
+  return mapped(box({2, 1, 2}, {1, 0.5, 1}, type), wavy);
+}
+
+const std::vector<std::pair<Element, std::string>> kElements = {
+    {Element::tet4, "tet4"},
+    {Element::tet4_edge_smoothed, "edge-smoothed"},
+    {Element::tet10, "tet10 curved"}};
+
+void add_volumes(std::vector<SceneCase>& out) {
+  const std::vector<std::string> covers = {"constraints/volume", "constraints/volume_rows"};
+  for (const auto& [element, name] : kElements) {
+    SceneCase one_field{name + ", one field",        {}, solid_mesh(element), element,
+                        {{"", material(0.3), 1000}}, {}};
+    out.push_back(one_field);
+    for (const auto strain : {VolumeStrainKind::linear, VolumeStrainKind::logarithmic}) {
+      for (const auto space : {VolumeSpace::node, VolumeSpace::element, VolumeSpace::body}) {
+        SceneCase c = one_field;
+        c.name = name + ", volume rows, space " + std::to_string(static_cast<int>(space)) + ", strain " +
+                 std::to_string(static_cast<int>(strain));
+        c.covers = covers;
+        c.effects = {volume_rows(space, strain)};
+        out.push_back(c);
+      }
+    }
+    SceneCase regions = one_field;
+    regions.name = name + ", two regions at nu = 0.5";
+    regions.mesh = divided(solid_mesh(element), 0.5);
+    regions.materials = {{"low", material(0.5), 1000}, {"", material(0.499), 500}};
+    regions.effects = {volume_rows(VolumeSpace::node, VolumeStrainKind::linear)};
+    regions.covers = covers;
+    out.push_back(regions);
+  }
+  // Both sides of the guard's threshold: J of about 0.34 and just around 0.5.
+  for (const double stretch : {0.7, 0.795}) {
+    SceneCase guarded{"guard, stretch " + std::to_string(stretch),
+                      covers,
+                      solid_mesh(Element::tet4_edge_smoothed),
+                      Element::tet4_edge_smoothed,
+                      {{"", material(0.5), 1000}},
+                      {volume_rows(VolumeSpace::node, VolumeStrainKind::linear)}};
+    guarded.stretch = stretch;
+    out.push_back(guarded);
+  }
+}
+
+void add_cavities(std::vector<SceneCase>& out) {
+  for (const auto& [element, name] : kElements) {
+    for (const bool open : {false, true}) {
+      for (const auto control : {CavityControl::pressure, CavityControl::volume_ratio}) {
+        isochor::CavityDef def;
+        def.body = BodyId{0};
+        def.surfaces = {"chamber"};
+        def.control = control;
+        def.amount = Curve::constant(1.2);
+        def.cap_free_openings = open;
+        const CellType type = element == Element::tet10 ? CellType::tet10 : CellType::tet4;
+        const auto smaller = [](const Vec3& p) { return wavy((1.0 / 3) * p); };
+        SceneCase c{name + (open ? ", open" : ", closed") + ", chamber control " +
+                        std::to_string(static_cast<int>(control)),
+                    {"constraints/cavity", "constraints/surface_pool"},
+                    mapped(hollow_box(open, type), smaller),
+                    element,
+                    {{"", material(0.3), 1000}},
+                    {isochor::cavity(def)}};
+        c.stress_free = false;
+        out.push_back(c);
+      }
+    }
+  }
+}
+
+void add_supports_and_loads(std::vector<SceneCase>& out) {
+  SceneCase c{
+      "supports",    {"constraints/dirichlet"},   solid_mesh(Element::tet4),
+      Element::tet4, {{"", material(0.5), 1000}}, {volume_rows(VolumeSpace::node, VolumeStrainKind::linear)}};
+  isochor::DirichletDef clamp;
+  clamp.where.surfaces = {"x0"};
+  isochor::DirichletDef slide;
+  slide.name = "slide";
+  slide.where.surfaces = {"y0"};
+  slide.directions = {{0.3, 1, 0.2}};
+  isochor::DirichletDef turn;
+  turn.name = "turn";
+  turn.where.nearest = {{1, 0.5, 1}};
+  turn.directions = {{1, 1, 0}, {1, 0, 0}};
+  turn.axis = {0, 0, 1};
+  turn.angle = 0.4;
+  turn.displacement = {0, 0, 0.1};
+  turn.amount = Curve::ramp(1);
+  c.effects.push_back(isochor::dirichlet(clamp));
+  c.effects.push_back(isochor::dirichlet(slide));
+  c.effects.push_back(isochor::dirichlet(turn));
+  out.push_back(c);
+
+  SceneCase loads = c;
+  loads.name = "loads";
+  loads.covers = {"constraints/loads", "constraints/surface_pool"};
+  isochor::TractionDef pull;
+  pull.surface = "x1";
+  pull.traction = {0.1, 0, 0.02};
+  isochor::TractionDef push;
+  push.name = "push";
+  push.surface = "z1";
+  push.total_force = {0, 0, -0.3};
+  isochor::PointForceDef point;
+  point.where.nearest = {{1, 0.5, 1}};
+  point.force = {0, 0.2, 0};
+  loads.materials = {{"", material(0.3), 1000}};
+  loads.effects = {isochor::traction(pull), isochor::traction(push), isochor::point_force(point)};
+  out.push_back(loads);
+}
+
+}  // namespace
+
+std::vector<SceneCase> scene_cases() {
+  std::vector<SceneCase> out;
+  add_volumes(out);
+  add_cavities(out);
+  add_supports_and_loads(out);
+  return out;
+}
+
+}  // namespace test

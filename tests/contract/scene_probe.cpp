@@ -1,0 +1,124 @@
+#include "contract/scene_probe.h"
+
+#include <random>
+#include <stdexcept>
+
+#include "support/meshes.h"
+
+namespace test {
+
+using namespace isochor;
+
+SceneProbe::SceneProbe(const SceneCase& c) {
+  BodyDef body;
+  body.mesh = c.mesh;
+  body.element = c.element;
+  body.materials = c.materials;
+  compiled_ = compile({body}, c.effects);
+  if (!compiled_.system) throw std::runtime_error(c.name + ": " + compiled_.error);
+  x_ = rest();
+  std::mt19937 random(23);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (Vec3& p : x_) p = c.stretch * wavy(p) + 0.004 * Vec3{unit(random), unit(random), unit(random)};
+}
+
+std::vector<double> SceneProbe::multipliers(std::size_t count) const {
+  std::vector<double> out(count);
+  for (std::size_t i = 0; i < count; ++i) out[i] = 0.4 * std::sin(1.0 + 2.7 * static_cast<double>(i));
+  return out;
+}
+
+std::vector<Vec3> SceneProbe::direction(unsigned seed) const {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<Vec3> d(x_.size());
+  for (Vec3& v : d) v = {unit(random), unit(random), unit(random)};
+  return d;
+}
+
+std::vector<Vec3> SceneProbe::moved(std::span<const Vec3> d, double h) const {
+  std::vector<Vec3> x = x_;
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += h * d[i];
+  return x;
+}
+
+Slots::Slots(const StencilPool& pool) {
+  const double nan = std::nan("");
+  const std::size_t slots = pool.nodes().item.size(), functions = static_cast<std::size_t>(pool.functions());
+  energy.assign(at(pool.stencils()), nan);
+  value.assign(at(pool.stencils()) * functions, nan);
+  gradient.assign(slots, Vec3{nan, nan, nan});
+  jacobian.assign(slots * functions, Vec3{nan, nan, nan});
+  Mat3 unset;
+  unset.m.fill(nan);
+  hessian.assign(pool.has_hessian() ? static_cast<std::size_t>(pool.hessian_offset().back()) : 0, unset);
+}
+
+bool all_finite(const Slots& s) {
+  bool finite = true;
+  for (const double e : s.energy) finite = finite && std::isfinite(e);
+  for (const double v : s.value) finite = finite && std::isfinite(v);
+  for (const Vec3& g : s.gradient) finite = finite && std::isfinite(dot(g, g));
+  for (const Vec3& g : s.jacobian) finite = finite && std::isfinite(dot(g, g));
+  for (const Mat3& h : s.hessian) {
+    for (const double v : h.m) finite = finite && std::isfinite(v);
+  }
+  return finite;
+}
+
+PoolProbe::PoolProbe(const StencilPool& pool, const SceneProbe& scene)
+    : pool_(pool),
+      scene_(scene),
+      multiplier_(scene.multipliers(at(pool.stencils()) * static_cast<std::size_t>(pool.functions()))) {}
+
+Slots PoolProbe::evaluate(Want want, const std::vector<Vec3>& x) const {
+  return evaluate(want, x, multiplier_);
+}
+
+Slots PoolProbe::evaluate(Want want, const std::vector<Vec3>& x, const std::vector<double>& multiplier,
+                          Definiteness definiteness) const {
+  Slots slots(pool_);
+  pool_.evaluate({want, definiteness, 0, pool_.stencils(), x, scene_.rest(), multiplier}, slots.spans());
+  return slots;
+}
+
+Slots PoolProbe::evaluate_split(const std::vector<Vec3>& x, Index grain) const {
+  Slots slots(pool_);
+  for (Index end = pool_.stencils(); end > 0; end -= grain) {
+    const Index begin = std::max(Index{0}, end - grain);
+    pool_.evaluate({Want::hessian, Definiteness::exact, begin, end, x, scene_.rest(), multiplier_},
+                   slots.spans());
+  }
+  return slots;
+}
+
+Slots PoolProbe::evaluate_range(const std::vector<Vec3>& x, Index begin, Index end) const {
+  Slots slots(pool_);
+  pool_.evaluate({Want::hessian, Definiteness::exact, begin, end, x, scene_.rest(), multiplier_},
+                 slots.spans());
+  return slots;
+}
+
+void PoolProbe::evaluate_into(Slots& slots, Want want, Definiteness definiteness,
+                              const std::vector<Vec3>& x) const {
+  pool_.evaluate({want, definiteness, 0, pool_.stencils(), x, scene_.rest(), multiplier_}, slots.spans());
+}
+
+Eigen::MatrixXd PoolProbe::dense_hessian(const Slots& slots, Index stencil) const {
+  const auto n = static_cast<Eigen::Index>(pool_.nodes()[stencil].size());
+  Eigen::MatrixXd H(3 * n, 3 * n);
+  auto block = static_cast<std::size_t>(pool_.hessian_offset()[at(stencil)]);
+  for (Eigen::Index a = 0; a < n; ++a) {
+    for (Eigen::Index b = 0; b <= a; ++b, ++block) {
+      for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+          H(3 * a + i, 3 * b + j) = slots.hessian[block](i, j);
+          H(3 * b + j, 3 * a + i) = slots.hessian[block](i, j);
+        }
+      }
+    }
+  }
+  return H;
+}
+
+}  // namespace test
