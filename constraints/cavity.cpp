@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -98,9 +99,16 @@ Result<std::vector<std::vector<Index>>> boundary_loops(const std::vector<Face>& 
   return loops;
 }
 
-// Fan over a loop from its first corner.
-void add_cap(EnclosedVolumePool& pool, const std::vector<Index>& loop, bool curved) {
+// Fan over a loop from the corner that comes first by its rest position: the cap of a free rim is then the same
+// however the nodes are numbered.
+void add_cap(EnclosedVolumePool& pool, std::vector<Index> loop, std::span<const Vec3> rest, bool curved) {
   const std::size_t stride = curved ? 2 : 1, corners = loop.size() / stride;
+  std::size_t apex = 0;
+  for (std::size_t i = 1; i < corners; ++i) {
+    const Vec3 &a = rest[at(loop[i * stride])], &b = rest[at(loop[apex * stride])];
+    if (std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z}) apex = i;
+  }
+  std::rotate(loop.begin(), loop.begin() + static_cast<std::ptrdiff_t>(apex * stride), loop.end());
   const auto corner = [&](std::size_t i) { return loop[(i % corners) * stride]; };
   const auto middle = [&](std::size_t i) { return loop[(i % corners) * stride + 1]; };
   if (!curved) {
@@ -208,7 +216,7 @@ class CavityEffect final : public EffectSource {
     if (!loops) return Error{loops.error()};
     for (const auto& loop : loops.value()) {
       if (auto r = check_opening(builder, body, loop); !r) return Error{r.error()};
-      add_cap(*pool, loop, per == 6);
+      add_cap(*pool, loop, builder.rest(), per == 6);
     }
     pool->finish();
     return finish(builder, pool);
