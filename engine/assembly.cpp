@@ -285,6 +285,16 @@ std::span<const double> Assembly::function_multipliers(Index pool) const {
           at(p.stencils()) * static_cast<std::size_t>(p.functions())};
 }
 
+void Assembly::stiffness_diagonal(std::span<double> k) const {
+  const auto ends = system_->block_nodes();
+  for (std::size_t d = 0; d < ends.size(); ++d) {
+    if (ends[d][0] != ends[d][1]) continue;
+    Mat3 block;
+    gather_block(static_cast<std::int64_t>(d), block);
+    k[at(ends[d][0])] = std::max({std::abs(block(0, 0)), std::abs(block(1, 1)), std::abs(block(2, 2))});
+  }
+}
+
 std::size_t Assembly::memory_bytes() const {
   return (energy_.size() + value_.size() + multiplier_.size()) * sizeof(double) +
          (gradient_.size() + jacobian_.size() + product_.size()) * sizeof(Vec3) +

@@ -36,6 +36,9 @@ class Assembly {
   // Multipliers of the functions of one stencil pool at the last evaluation (Want::gradient or more).
   std::span<const double> function_multipliers(Index pool) const;
 
+  // Largest diagonal entry of each node's own block of K (Want::hessian).
+  void stiffness_diagonal(std::span<double> k) const;
+
   std::size_t memory_bytes() const;
 
  private:

@@ -108,15 +108,30 @@ Newton::Newton(std::shared_ptr<const System> system, const Parallel& parallel,
   lambda_new_.resize(m);
   lambda_trial_.resize(m);
   prescribed_phi_.resize(at(s.prescribed_rows()));
-  stiffness_.resize(n);
   magnitude_.resize(n);
-  first_stiffness_.assign(n, 0);
+  rest_stiffness_.assign(n, 0);
+  stiffness_.resize(n);
   r_.resize(n);
   dx_.resize(n);
   gap_.resize(n);
   node_work_.resize(n);
   x_trial_.resize(n);
   reaction_.resize(n);
+  calibrate();
+}
+
+// Stiffness of the nodes at rest: what forces are compared with. It depends on the scene alone, never on the
+// path, so that a run continued from a checkpoint takes the same decisions.
+void Newton::calibrate() {
+  const System& s = *system_;
+  std::fill(lambda_trial_.begin(), lambda_trial_.end(), 0.0);
+  const std::vector<double> none(at(s.prescribed_rows()), 0.0);
+  assembly_.evaluate(Want::hessian, Definiteness::exact, s.parts().rest, lambda_trial_, none);
+  assembly_.stiffness_diagonal(rest_stiffness_);
+  double largest = 0;
+  for (const double k : rest_stiffness_) largest = std::max(largest, k);
+  for (double& k : rest_stiffness_) k = std::max(k, 1e-9 * largest);
+  stiffness_ = rest_stiffness_;
 }
 
 double Newton::potential(const NewtonProblem& p, std::span<const Vec3> x) const {
@@ -141,7 +156,6 @@ double Newton::potential_magnitude(const NewtonProblem& p, std::span<const Vec3>
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3 u = x[i] - rest[i];
     sum += norm(p.force[i]) * norm(u);
-    sum += stiffness_[i] * norm(u) * 1e-3 * system_->length() * 1e-3;
     if (p.mass_scale > 0) {
       const Vec3 d = x[i] - p.predicted[i];
       sum += 0.5 * p.mass_scale * system_->parts().mass[i] * dot(d, d);
@@ -179,7 +193,7 @@ Newton::Residuals Newton::measure(const NewtonProblem& p, std::span<const Vec3> 
   double force = 0, reference = 0, row = 0, position = 0;
   const double floor = 1e-6 * s.length();
   for (Index i = 0; i < s.nodes(); ++i) {
-    const double k = std::max(stiffness_[at(i)], first_stiffness_[at(i)]);
+    const double k = stiffness_[at(i)];
     if (k <= 0) continue;
     Vec3 free = r_[at(i)];
     const Index b = s.basis_of()[at(i)];
@@ -210,7 +224,12 @@ Newton::Residuals Newton::measure(const NewtonProblem& p, std::span<const Vec3> 
   return {relative, row, s.length() > 0 ? position / s.length() : position};
 }
 
-bool Newton::small(const Residuals& r, const NewtonOptions& o) const {
+// Writes the residuals of the last evaluation into the report and says whether they are within tolerance.
+bool Newton::balanced(const NewtonProblem& p, const NewtonOptions& o, std::span<const Vec3> x,
+                      NewtonReport& report) const {
+  const Residuals r = measure(p, x);
+  report.force_residual = r.force;
+  report.row_residual = r.row;
   return r.force <= o.force_tolerance && r.row <= o.row_tolerance && r.position <= o.position_tolerance;
 }
 
@@ -261,10 +280,7 @@ bool Newton::factor_shifted(double mass_scale, double shift, NewtonReport& repor
       for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
         k = std::max(k, std::abs(values_[static_cast<std::size_t>(s.diagonal_place()[at(c)])]));
       }
-      if (first[at(i)] == first[at(i) + 1]) k = first_stiffness_[at(i)];
-      stiffness_[at(i)] = k;
-      if (first_stiffness_[at(i)] == 0) first_stiffness_[at(i)] = k;
-      const double reference = std::max(k, 0.01 * first_stiffness_[at(i)]);
+      const double reference = std::max(k, 0.01 * stiffness_[at(i)]);
       for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
         scale_[at(c)] = reference > 0 ? 1 / std::sqrt(reference) : 1;
         values_[static_cast<std::size_t>(s.diagonal_place()[at(c)])] += shift * reference;
@@ -365,7 +381,7 @@ double Newton::merit_slope(std::span<const double> lambda) {
     for (std::size_t i = 0; i < dx_.size(); ++i) {
       reaction_[i] = -(r_[i] + node_work_[i] + reaction_[i]);
       q -= dot(reaction_[i], gap_[i]);
-      gap_norm += std::max(stiffness_[i], first_stiffness_[i]) * dot(gap_[i], gap_[i]);
+      gap_norm += stiffness_[i] * dot(gap_[i], gap_[i]);
     }
   }
   const double penalty = theta_norm + gap_norm;
@@ -383,8 +399,7 @@ double Newton::merit(const NewtonProblem& p, double tau, std::span<const double>
   if (has_gap_) {
     for (std::size_t i = 0; i < dx_.size(); ++i) {
       const Vec3 left = (tau - 1) * gap_[i];
-      sum += dot(reaction_[i], left) +
-             0.5 * gamma_ * std::max(stiffness_[i], first_stiffness_[i]) * dot(left, left);
+      sum += dot(reaction_[i], left) + 0.5 * gamma_ * stiffness_[i] * dot(left, left);
     }
   }
   return sum;
@@ -450,7 +465,31 @@ bool Newton::search(const NewtonProblem& p, std::span<Vec3> x, std::span<double>
   std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
   std::copy(lambda_trial_.begin(), lambda_trial_.end(), lambda.begin());
   report.step = tau * longest;
+  full_step_ = tau == 1;
   return true;
+}
+
+// Close to the solution the factors at hand are as good as new ones for a step or two: a few percent of the
+// price. True when the state is in balance. A correction that does not pay is dropped.
+bool Newton::correct(const NewtonProblem& p, const NewtonOptions& options, std::span<Vec3> x,
+                     std::span<double> lambda, NewtonReport& report) {
+  constexpr double worthwhile = 0.15;  // less of a reduction and a new factorization is the better buy
+  if (!full_step_ || report.force_residual > 1e-2 || report.row_residual > 1e-2) return false;
+  for (int k = 0; k < 4; ++k) {
+    position_gap(p, x);
+    if (has_gap_ || !direction(lambda, report)) return false;
+    const double force = report.force_residual, row = report.row_residual;
+    if (!std::isfinite(try_step(p, 1, x, lambda, report))) return false;
+    ++report.corrections;
+    const bool done = balanced(p, options, x_trial_, report);
+    const bool pays = report.force_residual <= std::max(worthwhile * force, options.force_tolerance) &&
+                      report.row_residual <= std::max(worthwhile * row, options.row_tolerance);
+    if (!pays) return false;
+    std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
+    std::copy(lambda_trial_.begin(), lambda_trial_.end(), lambda.begin());
+    if (done) return true;
+  }
+  return false;
 }
 
 NewtonReport Newton::solve(const NewtonProblem& p, const NewtonOptions& options, std::span<Vec3> x,
@@ -462,6 +501,9 @@ NewtonReport Newton::solve(const NewtonProblem& p, const NewtonOptions& options,
   };
   if (!all_finite(p)) return fail(NewtonStatus::not_finite);
   gamma_ = 0.1;
+  for (std::size_t i = 0; i < stiffness_.size(); ++i) {
+    stiffness_[i] = rest_stiffness_[i] + p.mass_scale * system_->parts().mass[i];
+  }
   const System& s = *system_;
   const Vec3 origin = s.nodes() > 0 ? s.parts().rest[0] : Vec3{};
   for (int iteration = 0;; ++iteration) {
@@ -474,23 +516,17 @@ NewtonReport Newton::solve(const NewtonProblem& p, const NewtonOptions& options,
     position_gap(p, x);
     if (cancelled && cancelled()) return fail(NewtonStatus::cancelled);
     if (iteration > options.max_iterations) return fail(NewtonStatus::iteration_limit);
-    if (!factor(p, x, lambda, report))
+    // A state that is already in balance stays to the last bit.
+    if (iteration == 0 && balanced(p, options, x, report)) return report;
+    if (!factor(p, x, lambda, report)) {
       return fail(report.status == NewtonStatus::converged ? NewtonStatus::singular : report.status);
-    if (iteration == 0) {
-      // Stiffness is known only now; a state that is already in balance stays to the last bit.
-      const Residuals now = measure(p, x);
-      report.force_residual = now.force;
-      report.row_residual = now.row;
-      if (small(now, options)) return report;
     }
     if (!direction(lambda, report)) return fail(NewtonStatus::singular);
     ++report.iterations;
     if (!search(p, x, lambda, report)) return fail(NewtonStatus::line_search_failed);
-    const Residuals now = measure(p, x);
-    report.force_residual = now.force;
-    report.row_residual = now.row;
-    if (progress) progress(report.iterations, now.force, now.row);
-    if (small(now, options)) return report;
+    const bool done = balanced(p, options, x, report);
+    if (progress) progress(report.iterations, report.force_residual, report.row_residual);
+    if (done || correct(p, options, x, lambda, report)) return report;
     for (const Vec3& xi : x) {
       const Vec3 d = xi - origin;
       if (!(dot(d, d) <= 1e8 * s.length() * s.length())) return fail(NewtonStatus::diverged);

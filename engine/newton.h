@@ -22,7 +22,8 @@ namespace isochor {
 
 struct NewtonOptions {
   int max_iterations = 60;
-  // Residual force against the magnitudes that cancel in it, in the norm sqrt(sum |r_i|^2 / k_i).
+  // Residual force against the magnitudes that cancel in it, in the norm sqrt(sum |r_i|^2 / k_i), k_i the
+  // stiffness of a node at rest plus its inertia.
   double force_tolerance = 1e-9;
   // max |phi - target - C lambda| / measure: relative volume for volume rows.
   double row_tolerance = 1e-10;
@@ -61,6 +62,7 @@ struct StageSeconds {
 struct NewtonReport {
   NewtonStatus status = NewtonStatus::converged;
   int iterations = 0, factorizations = 0, trials = 0;
+  int corrections = 0;             // further steps on factors at hand
   int projected = 0, shifted = 0;  // iterations mended by projection and by a diagonal shift
   Index negative_pivots = -1;      // of the last factorisation; rows() when the inertia is right
   double force_residual = 0, row_residual = 0, linear_residual = 0;
@@ -99,7 +101,11 @@ class Newton {
   double potential_magnitude(const NewtonProblem& p, std::span<const Vec3> x) const;
   void assemble_residual(const NewtonProblem& p, std::span<const Vec3> x, std::span<const double> lambda);
   Residuals measure(const NewtonProblem& p, std::span<const Vec3> x) const;
-  bool small(const Residuals& r, const NewtonOptions& o) const;
+  bool balanced(const NewtonProblem& p, const NewtonOptions& o, std::span<const Vec3> x,
+                NewtonReport& report) const;
+  void calibrate();
+  bool correct(const NewtonProblem& p, const NewtonOptions& options, std::span<Vec3> x,
+               std::span<double> lambda, NewtonReport& report);
   void position_gap(const NewtonProblem& p, std::span<const Vec3> x);
   bool factor(const NewtonProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
               NewtonReport& report);
@@ -118,11 +124,11 @@ class Newton {
   StageSeconds seconds_;
   std::int64_t factor_nonzeros_ = 0;
   int analyses_ = 0;
-  bool analyzed_ = false, has_gap_ = false;
+  bool analyzed_ = false, has_gap_ = false, full_step_ = false;
   double gamma_ = 0.1;  // more would follow the volume too closely, less would lose descent; raised as needed
 
   std::vector<double> values_, scale_, rhs_, solution_, theta_, row_work_, stiffness_, magnitude_,
-      first_stiffness_;
+      rest_stiffness_;
   std::vector<double> lambda_new_, lambda_trial_, prescribed_phi_;
   std::vector<Vec3> r_, dx_, gap_, node_work_, x_trial_, reaction_;
 };

@@ -152,8 +152,6 @@ NewtonReport World::Impl::attempt(double h) {
   const double t_new = state.t + h;
   evaluate_data(t_new);
   options.scheme->predict(state, h, predicted);
-  std::copy(state.x.begin(), state.x.end(), x_trial.begin());
-  std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
   NewtonProblem problem;
   problem.mass_scale = options.scheme->mass_scale(h);
   problem.predicted = predicted;
@@ -171,7 +169,26 @@ NewtonReport World::Impl::attempt(double h) {
       progress(ProgressInfo{t_new, t_new, iteration, f, r});
     };
   }
+  // Inertia's guess first; where it fails (it may turn elements over) the old positions are a safe start.
+  const bool dynamic = problem.mass_scale > 0;
+  std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
+  const auto& start = dynamic ? predicted : state.x;
+  std::copy(start.begin(), start.end(), x_trial.begin());
   NewtonReport report = newton->solve(problem, newton_options, x_trial, lambda_trial);
+  const bool stuck = report.status != NewtonStatus::converged && report.status != NewtonStatus::cancelled &&
+                     report.status != NewtonStatus::out_of_memory;
+  if (dynamic && stuck) {
+    std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
+    std::copy(state.x.begin(), state.x.end(), x_trial.begin());
+    NewtonReport second = newton->solve(problem, newton_options, x_trial, lambda_trial);
+    second.iterations += report.iterations;
+    second.factorizations += report.factorizations;
+    second.trials += report.trials;
+    second.corrections += report.corrections;
+    second.projected += report.projected;
+    second.shifted += report.shifted;
+    report = std::move(second);
+  }
   if (report.status == NewtonStatus::converged) {
     options.scheme->finish(h, x_trial, state);
     std::copy(lambda_trial.begin(), lambda_trial.end(), state.lambda.begin());
@@ -186,6 +203,7 @@ void accumulate(StepReport& total, const NewtonReport& r) {
   total.iterations += r.iterations;
   total.factorizations += r.factorizations;
   total.trials += r.trials;
+  total.corrections += r.corrections;
   total.projected += r.projected;
   total.shifted += r.shifted;
   total.negative_pivots = r.negative_pivots;

@@ -93,7 +93,10 @@ struct StepReport {
   std::string reason;  // empty when converged; else one sentence
   double time = 0;     // of the state now
   int substeps = 0, rejected_substeps = 0;
-  int iterations = 0, factorizations = 0, trials = 0, projected = 0, shifted = 0;
+  int iterations = 0;   // Newton iterations, each with its own factorization
+  int corrections = 0;  // further steps on factors at hand
+  int factorizations = 0, trials = 0;
+  int projected = 0, shifted = 0;  // iterations whose matrix had to be mended
   Index negative_pivots = -1, expected_negative_pivots = 0;
   double force_residual = 0, row_residual = 0, linear_residual = 0;
   StageTimes seconds;
