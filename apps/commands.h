@@ -1,0 +1,34 @@
+// The subcommands of `isochor`. Each returns the exit code.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace isochor::app {
+
+enum Exit : int {
+  success = 0,
+  internal = 1,
+  bad_input = 2,
+  not_converged = 3,
+  out_of_budget = 4,
+  interrupted = 130,  // as shells report SIGINT
+};
+
+struct RunArguments {
+  std::string scene = "finger";
+  std::vector<std::string> overrides;
+  std::string folder;  // empty: out/NAME
+  int threads = 0;
+  std::optional<double> budget;
+  bool quiet = false, json = false;
+};
+
+int run(const RunArguments& arguments);
+int show(const std::string& scene, const std::vector<std::string>& overrides);
+int list(bool json);
+int check(const std::vector<std::string>& meshes, double scale, bool json);
+int version(bool json);
+
+}  // namespace isochor::app

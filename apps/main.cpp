@@ -1,0 +1,77 @@
+// isochor: list, run, check and show scenes from the command line.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "apps/commands.h"
+
+namespace {
+
+using namespace isochor;
+
+constexpr const char* kRunFooter =
+    "Exit codes: 0 success, 1 internal error, 2 bad input, 3 not converged (what was reached is kept),\n"
+    "4 stopped by the budget, 130 interrupted.\n"
+    "Example: isochor run finger --set cavities.chamber.amount=20000 --set bodies[0].element=tet10";
+
+void add_run(CLI::App& top, app::RunArguments& a) {
+  CLI::App* c = top.add_subcommand("run", "Run a scene of the library or a scene file");
+  c->add_option("scene", a.scene, "Name of a scene (see `isochor list`) or a file that ends in .json")
+      ->capture_default_str();
+  c->add_option("--set", a.overrides, "Change a value of the scene: path=value")->type_name("PATH=VALUE")
+      ->take_all()->expected(1)->allow_extra_args(false);
+  c->add_option("--out", a.folder, "Folder of the outputs; default out/NAME")->type_name("DIR");
+  c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
+  c->add_option("--budget", a.budget, "Stop after this much wall time")->type_name("SECONDS")
+      ->check(CLI::PositiveNumber);
+  c->add_flag("--quiet", a.quiet, "Print errors only");
+  c->add_flag("--json", a.json, "Print the summary as JSON instead of tables");
+  c->footer(kRunFooter);
+}
+
+int dispatch(int argc, char** argv) {
+  CLI::App top{"Isochor: soft incompressible bodies, pneumatic robots at Poisson's ratio 0.5"};
+  top.name("isochor");
+  top.require_subcommand(1);
+  app::RunArguments run;
+  bool json = false;
+  double scale = 1;
+  std::vector<std::string> meshes, overrides;
+  std::string scene;
+  CLI::App* list = top.add_subcommand("list", "List the scenes of the library");
+  list->add_flag("--json", json, "As JSON");
+  add_run(top, run);
+  CLI::App* check = top.add_subcommand("check", "Check mesh files: counts and findings; exit 2 if one is not usable");
+  check->add_option("mesh", meshes, "Mesh files (.msh, .vtk, .vtu, .node/.ele, .mesh)")->required();
+  check->add_option("--scale", scale, "Multiplies coordinates: 1e-3 for millimeters")->check(CLI::PositiveNumber);
+  check->add_flag("--json", json, "As JSON");
+  CLI::App* show = top.add_subcommand("show", "Print a scene as a scene file, a start for one of your own");
+  show->add_option("scene", scene, "Name of a scene or a scene file")->required();
+  show->add_option("--set", overrides, "Change a value: path=value")->take_all()->expected(1)->allow_extra_args(false);
+  CLI::App* version = top.add_subcommand("version", "Print version, build and licenses");
+  version->add_flag("--json", json, "As JSON");
+  try {
+    top.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    // CLI11 has exit codes of its own; help is success, all else is bad input.
+    return top.exit(e) == 0 ? app::success : app::bad_input;
+  }
+  if (list->parsed()) return app::list(json);
+  if (check->parsed()) return app::check(meshes, scale, json);
+  if (show->parsed()) return app::show(scene, overrides);
+  if (version->parsed()) return app::version(json);
+  return app::run(run);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return dispatch(argc, argv);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "isochor: internal error: %s\n", e.what());
+  } catch (...) {
+    std::fprintf(stderr, "isochor: internal error\n");
+  }
+  return app::internal;
+}

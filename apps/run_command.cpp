@@ -1,0 +1,171 @@
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+
+#include "apps/commands.h"
+#include "apps/table.h"
+#include "scenes/library.h"
+#include "scenes/run.h"
+#include "scenes/scene_file.h"
+
+namespace isochor::app {
+
+namespace {
+
+std::atomic<int> g_signals{0};
+static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may touch it");
+
+// The first signal ends the run in good order, the second at once.
+void on_signal(int) {
+  if (g_signals.fetch_add(1) > 0) _exit(interrupted);
+}
+
+Result<SceneDef> find(const std::string& name, const Overrides& overrides) {
+  if (const LibraryScene* scene = find_scene(name)) return override_scene(scene->make({}), overrides);
+  const bool file = name.ends_with(".json") || name.find('/') != std::string::npos;
+  if (file) return read_scene_file(name, overrides);
+  std::string known;
+  for (const auto& s : scene_library()) known += (known.empty() ? "" : ", ") + std::string(s.name);
+  return Error{"there is no scene named \"" + name + "\"; the library has " + known +
+               "; a scene file ends in .json"};
+}
+
+std::string duration(double s) {
+  char text[32];
+  if (s < 60) std::snprintf(text, sizeof text, "%.1fs", s);
+  else std::snprintf(text, sizeof text, "%dm%02ds", static_cast<int>(s) / 60, static_cast<int>(s) % 60);
+  return text;
+}
+
+class Progress {
+ public:
+  void header() const {
+    std::printf("%6s %10s %5s %9s %9s %9s %8s %8s %7s\n", "step", "time", "iter", "residual", "rows", "volume err",
+                "min J", "elapsed", "ETA");
+  }
+  void line(const StepRecord& r, int steps) {
+    if (r.rejected > 0) note_rejected(r);
+    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const double eta = r.step > 0 ? elapsed / r.step * (steps - r.step) : 0;
+    const std::string step = std::to_string(r.step) + "/" + std::to_string(steps);
+    std::printf("%6s %10.4g %5d %9.1e %9.1e %9.1e  %8.4f %8s %7s\n", step.c_str(), r.time, r.iterations,
+                r.force_residual, r.row_residual, r.volume_error, r.min_J, duration(elapsed).c_str(),
+                duration(eta).c_str());
+    std::fflush(stdout);
+  }
+
+ private:
+  static void note_rejected(const StepRecord& r) {
+    std::printf("       (%d increments, %d tried again shorter)\n", r.substeps, r.rejected);
+  }
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::string vector_text(const Vec3& v) {
+  return number(v.x) + " " + number(v.y) + " " + number(v.z);
+}
+
+void print_metrics(const RunResult& r) {
+  if (r.metrics.empty()) return;
+  Table table({"metric", "value", "unit", "reference", "error", "", "source"});
+  table.numbers_from(1, 1);
+  for (const MetricValue& m : r.metrics) {
+    const bool absolute = m.def.reference && *m.def.reference == 0;
+    std::string error = m.error ? (absolute ? number(*m.error, 2) : number(100 * *m.error, 3) + " %") : "";
+    if (!m.reached) error = "not reached";
+    table.add({m.def.name, number(m.value, 6), m.def.unit, m.def.reference ? number(*m.def.reference, 6) : "", error,
+               m.within ? (*m.within ? "ok" : "OUT") : "", m.def.source});
+  }
+  std::printf("\n%s", table.text("  ").c_str());
+}
+
+void print_state(const RunResult& r) {
+  if (r.records.empty()) return;
+  const StepRecord& end = r.records.back();
+  Table table({"at the end", "", ""});
+  for (std::size_t p = 0; p < r.probes.size(); ++p) {
+    table.add({"probe " + r.probes[p], vector_text(end.probes[p]), "m"});
+  }
+  for (std::size_t c = 0; c < r.cavities.size(); ++c) {
+    table.add({"cavity " + r.cavities[c],
+               number(end.cavities[c].pressure) + " Pa, " + number(1e6 * end.cavities[c].volume) + " cm^3", ""});
+  }
+  for (std::size_t s = 0; s < r.supports.size(); ++s) {
+    table.add({"reaction " + r.supports[s], vector_text(end.reactions[s].force), "N"});
+  }
+  std::printf("\n%s", table.text("  ").c_str());
+}
+
+void print_summary(const RunResult& r, const std::string& folder) {
+  print_metrics(r);
+  print_state(r);
+  std::printf("\n%s: %s, %d Newton iterations, %d factorizations, %.2f s; volume error %.1e\n", r.scene.c_str(),
+              to_string(r.status), r.newton_iterations, r.factorizations, r.wall_s,
+              r.records.empty() ? 0.0 : r.records.back().volume_error);
+  std::printf("outputs in %s/: index.html, %s.pvd, steps.csv, summary.json\n", folder.c_str(), r.scene.c_str());
+}
+
+int exit_code(RunStatus status) {
+  switch (status) {
+    case RunStatus::converged: return success;
+    case RunStatus::not_converged: return not_converged;
+    case RunStatus::budget: return out_of_budget;
+    case RunStatus::interrupted: return interrupted;
+    case RunStatus::bad_input: return bad_input;
+    case RunStatus::failed: break;
+  }
+  return internal;
+}
+
+}  // namespace
+
+int run(const RunArguments& a) {
+  auto scene = find(a.scene, a.overrides);
+  if (!scene) {
+    std::fprintf(stderr, "isochor: %s\n", scene.error().c_str());
+    return bad_input;
+  }
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  const bool tables = !a.quiet && !a.json;
+  RunOptions options;
+  options.folder = a.folder.empty() ? "out/" + scene.value().name : a.folder;
+  options.threads = a.threads;
+  options.budget = a.budget;
+  options.stop = [] { return g_signals.load() > 0; };
+  options.log = [&](const std::string& text) {
+    if (!a.quiet) std::fprintf(stderr, "isochor: note: %s\n", text.c_str());
+  };
+  Progress progress;
+  bool first = true;
+  options.on_step = [&](const StepRecord& record, int steps) {
+    if (!tables) return;
+    if (first) progress.header();
+    first = false;
+    progress.line(record, steps);
+  };
+  const RunResult result = run_scene(scene.value(), options);
+  if (result.status == RunStatus::bad_input) {
+    std::fprintf(stderr, "isochor: %s\n", result.reason.c_str());
+    return bad_input;
+  }
+  if (a.json) std::fputs(summary_json(result).c_str(), stdout);
+  if (tables) print_summary(result, options.folder);
+  if (!result.reason.empty()) std::fprintf(stderr, "isochor: %s: %s\n", to_string(result.status), result.reason.c_str());
+  return exit_code(result.status);
+}
+
+int show(const std::string& name, const std::vector<std::string>& overrides) {
+  auto scene = find(name, overrides);
+  if (!scene) {
+    std::fprintf(stderr, "isochor: %s\n", scene.error().c_str());
+    return bad_input;
+  }
+  std::fputs(to_json(scene.value()).c_str(), stdout);
+  return success;
+}
+
+}  // namespace isochor::app

@@ -1,0 +1,110 @@
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "isochor/mesh_io.h"
+#include "isochor/schemes.h"
+#include "scenes/scene.h"
+
+namespace isochor {
+
+namespace {
+
+Result<Mesh> make_mesh(const SceneBody& body, const std::string& folder) {
+  if (const auto* box = std::get_if<BoxMeshDef>(&body.mesh)) return box_mesh(*box);
+  const auto& file = std::get<MeshFile>(body.mesh);
+  std::filesystem::path path(file.path);
+  if (path.is_relative()) path = std::filesystem::path(folder) / path;
+  return read_mesh(path.lexically_normal().string(), {file.scale});
+}
+
+Result<MaterialPtr> make_material(const MaterialDef& def) {
+  switch (def.law) {
+    case MaterialLaw::neo_hookean: return neo_hookean(def.constants);
+    case MaterialLaw::stable_neo_hookean: return stable_neo_hookean(def.constants);
+  }
+  return Error{"unknown material law"};
+}
+
+std::string place(const char* list, std::size_t i) {
+  return std::string(list) + "[" + std::to_string(i) + "]";
+}
+
+Result<void> add_bodies(const SceneDef& scene, BuiltScene& built) {
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const SceneBody& body = scene.bodies[b];
+    BodyDef def;
+    def.name = body.name;
+    def.element = body.element;
+    def.guard_stiffness = body.guard_stiffness;
+    def.guard_threshold = body.guard_threshold;
+    auto mesh = make_mesh(body, scene.folder);
+    if (!mesh) return Error{place("bodies", b) + ".mesh: " + mesh.error()};
+    def.mesh = std::move(mesh).value();
+    for (std::size_t m = 0; m < body.materials.size(); ++m) {
+      auto material = make_material(body.materials[m]);
+      if (!material) return Error{place("bodies", b) + "." + place("materials", m) + ": " + material.error()};
+      def.materials.push_back(
+          {body.materials[m].region, std::move(material).value(), body.materials[m].density});
+    }
+    auto id = built.world.add_body(std::move(def));
+    if (!id) return Error{id.error()};
+    built.bodies.push_back(id.value());
+  }
+  return {};
+}
+
+std::vector<VolumeRows> volume_rows(const SceneDef& scene) {
+  if (scene.volumes) return *scene.volumes;
+  std::vector<VolumeRows> rows(scene.bodies.size());
+  for (std::size_t b = 0; b < rows.size(); ++b) {
+    rows[b].def.body = static_cast<BodyId>(b);
+    if (b > 0) rows[b].def.name += " " + scene.bodies[b].name;
+  }
+  return rows;
+}
+
+// Supports come before cavities, whose caps they hold.
+Result<void> add_effects(const SceneDef& scene, BuiltScene& built) {
+  std::string error;
+  const auto add = [&](EffectPtr effect) {
+    auto id = built.world.add(std::move(effect));
+    if (!id && error.empty()) error = id.error();
+    return id ? id.value() : EffectId{};
+  };
+  for (const VolumeRows& rows : volume_rows(scene)) {
+    if (!rows.none) add(volume(rows.def));
+  }
+  for (const auto& def : scene.dirichlet) built.dirichlet.push_back(add(dirichlet(def)));
+  for (const auto& def : scene.tractions) built.tractions.push_back(add(traction(def)));
+  for (const auto& def : scene.forces) built.forces.push_back(add(point_force(def)));
+  for (const auto& def : scene.cavities) built.cavities.push_back(add(cavity(def)));
+  if (!error.empty()) return Error{error};
+  return {};
+}
+
+}  // namespace
+
+Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
+  if (auto r = check_scene(scene); !r) return Error{r.error()};
+  WorldOptions world_options;
+  const AnalysisDef& a = scene.analysis;
+  world_options.scheme = a.type == AnalysisType::statics ? statics() : implicit_euler();
+  world_options.solver = a.solver;
+  world_options.threads = options.threads;
+  world_options.max_iterations = a.max_iterations;
+  world_options.force_tolerance = a.force_tolerance;
+  world_options.row_tolerance = a.row_tolerance;
+  world_options.smallest_fraction = a.smallest_fraction;
+  world_options.gravity = scene.gravity;
+  world_options.gravity_curve = scene.gravity_amount;
+  auto world = World::create(std::move(world_options));
+  if (!world) return Error{world.error()};
+  BuiltScene built{std::move(world).value(), {}, {}, {}, {}, {}};
+  if (auto r = add_bodies(scene, built); !r) return Error{r.error()};
+  if (auto r = add_effects(scene, built); !r) return Error{r.error()};
+  if (auto r = built.world.compile(); !r) return Error{r.error()};
+  return built;
+}
+
+}  // namespace isochor

@@ -1,0 +1,201 @@
+// The keys of a scene file, said once: the same descriptions read a file, write one and list what the schema
+// must hold. `Io` is Reader, Writer or KeyList; its functions take a key, the value and the default that a
+// writer leaves out.
+#pragma once
+
+#include "scenes/json/names.h"
+
+namespace isochor::scene_json {
+
+// How a number given for a curve is meant: statics ramps to it, dynamics has it from the start.
+enum class CurveStart : std::uint8_t { zero, one, constant };
+
+template <class Io>
+void describe(Io& io, MaterialDef& m) {
+  io.text("region", m.region);
+  io.word("law", m.law, MaterialLaw::neo_hookean);
+  io.number("young", m.constants.young, 0.0);
+  io.number("poisson", m.constants.poisson, 0.0);
+  io.number("mu", m.constants.mu, 0.0);
+  io.number_or_inf("lambda", m.constants.lambda, -1.0);
+  io.number_or_inf("bulk", m.constants.bulk, -1.0);
+  io.word("bulk_choice", m.constants.bulk_choice, BulkChoice::consistent);
+  io.number("density", m.density, 1000.0);
+}
+
+template <class Io>
+void describe(Io& io, BoxMeshDef& b) {
+  io.vector("lower", b.lower, Vec3{});
+  io.vector("upper", b.upper, Vec3{1, 1, 1});
+  io.integers("divisions", b.divisions);
+  io.word("cell_type", b.cell_type, CellType::tet4);
+}
+
+// A file with its scale, or a generated box.
+struct MeshSource {
+  std::variant<MeshFile, BoxMeshDef>& mesh;
+};
+template <class Io>
+void describe(Io& io, MeshSource& m) {
+  io.either("file", "box", m.mesh);
+  if (auto* file = std::get_if<MeshFile>(&m.mesh)) {
+    io.required_text("file", file->path);
+    io.number("scale", file->scale, 1.0);
+  }
+  if (auto* box = std::get_if<BoxMeshDef>(&m.mesh)) io.object("box", *box);
+}
+
+template <class Io>
+void describe(Io& io, SceneBody& b) {
+  io.required_text("name", b.name);
+  MeshSource mesh{b.mesh};
+  io.object("mesh", mesh);
+  io.word("element", b.element, Element::tet4_edge_smoothed);
+  io.list("materials", b.materials);
+  io.optional_number("guard_stiffness", b.guard_stiffness);
+  io.number("guard_threshold", b.guard_threshold, 0.5);
+}
+
+template <class Io>
+void describe(Io& io, VolumeRows& v) {
+  io.text("name", v.def.name);
+  io.body("body", v.def.body);
+  auto space = v.none ? VolumeSpaceWord::none : static_cast<VolumeSpaceWord>(v.def.space);
+  io.word("space", space, VolumeSpaceWord::node);
+  v.none = space == VolumeSpaceWord::none;
+  if (!v.none) v.def.space = static_cast<VolumeSpace>(space);
+  io.word("strain", v.def.strain, VolumeStrainKind::linear);
+  io.names("regions", v.def.regions);
+  io.number("stabilization", v.def.stabilization, 1.0);
+  io.flag("hard", v.def.hard, false);
+  io.flag("carries_bulk", v.def.carries_bulk, true);
+}
+
+template <class Io>
+void describe(Io& io, Selection& s) {
+  io.body("body", s.body);
+  io.names("surfaces", s.surfaces);
+  io.names("regions", s.regions);
+  io.names("node_sets", s.node_sets);
+  io.indices("nodes", s.nodes);
+  io.boxes("boxes", s.boxes);
+  io.points("nearest", s.nearest);
+  io.flag("everything", s.everything, false);
+}
+
+struct Rotation {
+  DirichletDef& def;
+};
+template <class Io>
+void describe(Io& io, Rotation& r) {
+  io.vector("point", r.def.axis_point, Vec3{});
+  io.required_vector("axis", r.def.axis);
+  io.angle("angle", "angle_deg", r.def.angle);
+}
+
+template <class Io>
+void describe(Io& io, DirichletDef& d) {
+  io.required_text("name", d.name);
+  io.object("where", d.where);
+  io.directions("directions", d.directions);
+  io.vector("displacement", d.displacement, Vec3{});
+  Rotation rotation{d};
+  io.optional_object("rotation", rotation, d.angle != 0);
+  const bool moves = d.angle != 0 || !(d.displacement == Vec3{});
+  io.curve("amount", d.amount, CurveStart::zero, moves);
+}
+
+template <class Io>
+void describe(Io& io, CavityDef& c) {
+  io.required_text("name", c.name);
+  io.body("body", c.body);
+  io.names("surfaces", c.surfaces);
+  io.word("control", c.control, CavityControl::pressure);
+  constexpr CurveStart kStart[] = {CurveStart::zero, CurveStart::constant, CurveStart::one};
+  io.required_curve("amount", c.amount, kStart[static_cast<std::size_t>(c.control)]);
+  io.flag("cap_free_openings", c.cap_free_openings, false);
+}
+
+template <class Io>
+void describe(Io& io, TractionDef& t) {
+  io.required_text("name", t.name);
+  io.body("body", t.body);
+  io.required_text("surface", t.surface);
+  io.vector("traction", t.traction, Vec3{});
+  io.vector("total_force", t.total_force, Vec3{});
+  io.curve("amount", t.amount, CurveStart::zero, true);
+}
+
+template <class Io>
+void describe(Io& io, PointForceDef& f) {
+  io.required_text("name", f.name);
+  io.object("where", f.where);
+  io.required_vector("force", f.force);
+  io.curve("amount", f.amount, CurveStart::zero, true);
+}
+
+template <class Io>
+void describe(Io& io, AnalysisDef& a) {
+  io.word("type", a.type, AnalysisType::statics);
+  io.number("duration", a.duration, 1.0);
+  io.not_both("steps", "step");
+  io.integer("steps", a.steps, a.step ? a.steps : 10);
+  io.optional_number("step", a.step);
+  io.word("solver", a.solver, Solver::automatic);
+  io.integer("max_iterations", a.max_iterations, 60);
+  io.number("force_tolerance", a.force_tolerance, 1e-9);
+  io.number("row_tolerance", a.row_tolerance, 1e-10);
+  io.number("smallest_fraction", a.smallest_fraction, 1.0 / 1024);
+}
+
+template <class Io>
+void describe(Io& io, ProbeDef& p) {
+  io.required_text("name", p.name);
+  io.body("body", p.body);
+  io.required_vector("point", p.point);
+}
+
+template <class Io>
+void describe(Io& io, OutputDef& o) {
+  io.integer("every", o.every, 1);
+  io.flag("page", o.page, true);
+}
+
+template <class Io>
+void describe(Io& io, MetricDef& m) {
+  io.required_text("name", m.name);
+  io.word("quantity", m.quantity, Quantity::displacement);
+  io.text("of", m.of);
+  io.word("component", m.component, Component::magnitude);
+  io.number("scale", m.scale, 1.0);
+  io.optional_number("time", m.time);
+  io.optional_number("reference", m.reference);
+  io.optional_number("tolerance", m.tolerance);
+  io.text("source", m.source);
+  io.text("unit", m.unit);
+}
+
+// Bodies and the analysis come first: names of bodies and the meaning of plain numbers depend on them.
+template <class Io>
+void describe(Io& io, SceneDef& s) {
+  io.note("$schema");
+  io.text("name", s.name);
+  io.text("title", s.title);
+  io.text("description", s.description);
+  io.list("bodies", s.bodies);
+  io.bodies_known(s.bodies);
+  io.object("analysis", s.analysis);
+  io.analysis_known(s.analysis);
+  io.optional_list("volumes", s.volumes);
+  io.list("dirichlet", s.dirichlet);
+  io.list("cavities", s.cavities);
+  io.list("tractions", s.tractions);
+  io.list("forces", s.forces);
+  io.vector("gravity", s.gravity, Vec3{});
+  io.curve("gravity_amount", s.gravity_amount, CurveStart::zero, !(s.gravity == Vec3{}));
+  io.list("probes", s.probes);
+  io.object("outputs", s.outputs);
+  io.list("metrics", s.metrics);
+}
+
+}  // namespace isochor::scene_json

@@ -1,0 +1,153 @@
+#include "scenes/scene_file.h"
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "scenes/json/overrides.h"
+#include "scenes/json/reader.h"
+#include "scenes/json/writer.h"
+
+namespace isochor {
+
+using scene_json::Json;
+
+namespace {
+
+constexpr std::uintmax_t kMostBytes = 64u << 20;
+constexpr int kMostDepth = 64;
+
+// Finds what the JSON library lets pass: keys given twice and nesting without end.
+class StrictParse {
+ public:
+  bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
+    if (depth > kMostDepth) {
+      fail("it is nested more than " + std::to_string(kMostDepth) + " deep");
+      return false;
+    }
+    if (event == Json::parse_event_t::object_start) keys_.emplace_back();
+    if (event == Json::parse_event_t::object_end && !keys_.empty()) keys_.pop_back();
+    if (event == Json::parse_event_t::key && !keys_.empty()) {
+      const auto& key = parsed.get_ref<const std::string&>();
+      if (!keys_.back().insert(key).second) fail("key \"" + key + "\" is given twice in one object; keep one");
+    }
+    return true;
+  }
+  const std::string& error() const { return error_; }
+
+ private:
+  void fail(std::string message) {
+    if (error_.empty()) error_ = std::move(message);
+  }
+  std::vector<std::set<std::string>> keys_;
+  std::string error_;
+};
+
+// "[json.exception...] parse error at line 3, column 5: syntax error..." without its bracket.
+std::string plain(const char* what) {
+  std::string text = what;
+  if (const auto end = text.find("] "); !text.empty() && text[0] == '[' && end != std::string::npos) {
+    text = text.substr(end + 2);
+  }
+  // Bytes of a broken file must not reach a terminal.
+  for (char& c : text) {
+    const auto u = static_cast<unsigned char>(c);
+    if (u < 0x20 || u >= 0x7f) c = '?';
+  }
+  return text.size() > 300 ? text.substr(0, 300) + "..." : text;
+}
+
+Result<Json> parse_text(const std::string& text, const std::string& source) {
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
+    return Error{source + ": the file is empty; a scene needs at least \"bodies\""};
+  }
+  StrictParse strict;
+  try {
+    Json json = Json::parse(text, std::ref(strict));
+    if (!strict.error().empty()) return Error{source + ": " + strict.error()};
+    if (!json.is_object()) return Error{source + ": a scene file is one object {...}"};
+    return json;
+  } catch (const std::exception& e) {
+    return Error{source + ": " + plain(e.what())};
+  }
+}
+
+Result<SceneDef> from_json(const Json& json, const std::string& source, const std::string& folder) {
+  SceneDef scene;
+  scene_json::ReadContext context;
+  try {
+    scene_json::Reader reader(json, "", context);
+    scene_json::describe(reader, scene);
+    reader.finish();
+  } catch (const std::exception& e) {
+    return Error{source + ": " + plain(e.what())};
+  }
+  if (!context.error.empty()) return Error{source + ": " + context.error};
+  scene.folder = folder;
+  if (auto r = check_scene(scene); !r) return Error{source + ": " + r.error()};
+  return scene;
+}
+
+Result<void> apply(Json& json, const Overrides& overrides) {
+  for (const std::string& o : overrides) {
+    if (auto r = scene_json::apply_override(json, o); !r) return r;
+  }
+  return {};
+}
+
+Json json_of(const SceneDef& scene) {
+  Json json;
+  SceneDef copy = scene;  // descriptions take what they may fill
+  scene_json::Writer writer(json, copy);
+  scene_json::describe(writer, copy);
+  return json;
+}
+
+std::string described(const std::string& source, const Overrides& overrides) {
+  std::string text = source;
+  for (const auto& o : overrides) text += " --set " + o;
+  return text;
+}
+
+}  // namespace
+
+Result<SceneDef> parse_scene(const std::string& text, const std::string& source, const std::string& folder,
+                             const Overrides& overrides) {
+  auto json = parse_text(text, source);
+  if (!json) return Error{json.error()};
+  if (auto r = apply(json.value(), overrides); !r) return Error{source + ": " + r.error()};
+  return from_json(json.value(), described(source, overrides), folder);
+}
+
+Result<SceneDef> read_scene_file(const std::string& path, const Overrides& overrides) {
+  std::error_code code;
+  const auto status = std::filesystem::status(path, code);
+  if (!std::filesystem::exists(status)) return Error{path + ": there is no such file"};
+  if (std::filesystem::is_directory(status)) return Error{path + ": this is a folder, not a scene file"};
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return Error{path + ": cannot be read; check its permissions"};
+  std::string text;
+  char block[1 << 16];
+  while (in.read(block, sizeof block) || in.gcount() > 0) {
+    text.append(block, static_cast<std::size_t>(in.gcount()));
+    if (text.size() > kMostBytes) return Error{path + ": larger than 64 MiB; this is no scene file"};
+  }
+  const auto stem = std::filesystem::path(path).stem().string();
+  auto scene = parse_scene(text, path, std::filesystem::path(path).parent_path().string(), overrides);
+  if (scene && scene.value().name == SceneDef{}.name && !stem.empty()) scene.value().name = stem;
+  return scene;
+}
+
+Result<SceneDef> override_scene(const SceneDef& scene, const Overrides& overrides) {
+  if (overrides.empty()) return scene;
+  Json json = json_of(scene);
+  if (auto r = apply(json, overrides); !r) return Error{"scene " + scene.name + ": " + r.error()};
+  return from_json(json, described("scene " + scene.name, overrides), scene.folder);
+}
+
+std::string to_json(const SceneDef& scene) {
+  return json_of(scene).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace isochor

@@ -1,0 +1,104 @@
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "scenes/run.h"
+
+namespace isochor {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json list_of(const Vec3& v) {
+  return Json::array({v.x, v.y, v.z});
+}
+
+Json stages(const StageTimes& t) {
+  return {{"analyze", t.analyze}, {"evaluate", t.evaluate}, {"gather", t.gather},          {"factor", t.factor},
+          {"solve", t.solve},     {"line_search", t.line_search}, {"total", t.total}};
+}
+
+Json metric(const MetricValue& m) {
+  Json j{{"name", m.def.name}, {"value", m.value}, {"unit", m.def.unit}};
+  if (!m.reached) j["reached"] = false;
+  if (m.def.reference) j["reference"] = *m.def.reference;
+  if (m.error) j["error"] = *m.error;
+  if (m.def.tolerance) j["tolerance"] = *m.def.tolerance;
+  if (m.within) j["within_tolerance"] = *m.within;
+  if (!m.def.source.empty()) j["source"] = m.def.source;
+  return j;
+}
+
+// What the last state of the run looks like.
+void add_state(Json& j, const RunResult& r) {
+  const StepRecord& end = r.records.back();
+  j["time"] = end.time;
+  j["volume_error"] = end.volume_error;
+  j["constitutive_residual"] = end.constitutive_residual;
+  j["min_J"] = end.min_J;
+  j["max_J"] = end.max_J;
+  j["elastic_energy_J"] = end.elastic_energy;
+  j["kinetic_energy_J"] = end.kinetic_energy;
+  for (const char* key : {"probes", "cavities", "reactions"}) j[key] = Json::object();
+  for (std::size_t p = 0; p < r.probes.size(); ++p) j["probes"][r.probes[p]] = list_of(end.probes[p]);
+  for (std::size_t c = 0; c < r.cavities.size(); ++c) {
+    j["cavities"][r.cavities[c]] = {{"pressure_Pa", end.cavities[c].pressure}, {"volume_m3", end.cavities[c].volume}};
+  }
+  for (std::size_t s = 0; s < r.supports.size(); ++s) {
+    j["reactions"][r.supports[s]] = {{"force_N", list_of(end.reactions[s].force)},
+                                     {"moment_Nm", list_of(end.reactions[s].moment)}};
+  }
+}
+
+}  // namespace
+
+std::string summary_json(const RunResult& r) {
+  Json j;
+  j["status"] = to_string(r.status);
+  j["reason"] = r.reason;
+  j["scene"] = r.scene;
+  j["steps"] = r.records.empty() ? 0 : r.records.back().step;
+  j["steps_asked"] = r.steps_asked;
+  j["newton_iterations"] = r.newton_iterations;
+  j["factorizations"] = r.factorizations;
+  j["wall_s"] = r.wall_s;
+  j["stage_s"] = stages(r.stages);
+  j["unknowns"] = {{"displacement", r.size.displacement_unknowns}, {"multipliers", r.size.multipliers}};
+  j["elements"] = r.elements;
+  if (!r.records.empty()) add_state(j, r);
+  j["metrics"] = Json::array();
+  for (const auto& m : r.metrics) j["metrics"].push_back(metric(m));
+  char hash[20];
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(r.state_hash));
+  j["state_hash"] = hash;
+  j["warnings"] = r.warnings;
+  j["version"] = version();
+  j["build"] = build_description();
+  j["machine"] = machine_description();
+  j["threads"] = r.threads;
+  return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string version() {
+  return ISOCHOR_VERSION;
+}
+
+std::string build_description() {
+  return ISOCHOR_BUILD;
+}
+
+std::string machine_description() {
+  std::string processor = "unknown processor";
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("model name")) continue;
+    if (const auto colon = line.find(": "); colon != std::string::npos) processor = line.substr(colon + 2);
+    break;
+  }
+  return processor + ", " + std::to_string(std::max(1u, std::thread::hardware_concurrency())) + " threads";
+}
+
+}  // namespace isochor

@@ -1,0 +1,44 @@
+#include "scenes/library.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+namespace isochor {
+
+namespace {
+
+constexpr std::array<LibraryScene, 14> kScenes{{
+    {"finger", "Bending finger with bellows and a limiting layer, 10 kPa", finger},
+    {"tube", "Inflated tube, ends held, 10 kPa", tube},
+    {"cushion", "Cushion, 10 kPa", cushion},
+    {"bubble", "Thin dome, 4 kPa", bubble},
+    {"spine", "Spine arm under its own weight", spine},
+    {"cantilever", "Cantilever under gravity, whole load in one step", cantilever},
+    {"cantilever_tenth", "Cantilever under a tenth of gravity, where bending decides", cantilever_tenth},
+    {"cook", "Cook's membrane in 3D", cook},
+    {"cook_plane", "Cook's membrane in plane strain", cook_plane},
+    {"thick_tube", "Thick tube in plane strain, pressure given", thick_tube},
+    {"thick_tube_volume", "Thick tube in plane strain, volume given", thick_tube_volume},
+    {"thick_sphere", "Thick sphere, pressure given", thick_sphere},
+    {"thick_sphere_volume", "Thick sphere through its limit point, volume given", thick_sphere_volume},
+    {"torsion", "Solid cylinder, one end turned", torsion},
+}};
+
+}  // namespace
+
+std::span<const LibraryScene> scene_library() {
+  return kScenes;
+}
+
+const LibraryScene* find_scene(std::string_view name) {
+  const auto it = std::find_if(kScenes.begin(), kScenes.end(), [&](const auto& s) { return s.name == name; });
+  return it == kScenes.end() ? nullptr : &*it;
+}
+
+std::string scenes_folder() {
+  const char* set = std::getenv("ISOCHOR_SCENES");
+  return set && *set ? set : ISOCHOR_SCENES_FOLDER;
+}
+
+}  // namespace isochor

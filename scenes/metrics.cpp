@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <cmath>
+
+#include "scenes/run.h"
+
+namespace isochor {
+
+namespace {
+
+template <class T>
+std::size_t place_of(const std::vector<T>& items, const std::string& name) {
+  const auto it = std::find_if(items.begin(), items.end(), [&](const T& t) { return t.name == name; });
+  return static_cast<std::size_t>(it - items.begin());
+}
+
+double component(const Vec3& v, Component c) {
+  if (c == Component::magnitude) return std::sqrt(dot(v, v));
+  return v[static_cast<int>(c) - static_cast<int>(Component::x)];
+}
+
+double quantity(const SceneDef& scene, const MetricDef& m, const std::vector<StepRecord>& records,
+                const StepRecord& r) {
+  switch (m.quantity) {
+    case Quantity::displacement: return component(r.probes[place_of(scene.probes, m.of)], m.component);
+    case Quantity::cavity_pressure: return r.cavities[place_of(scene.cavities, m.of)].pressure;
+    case Quantity::cavity_volume: return r.cavities[place_of(scene.cavities, m.of)].volume;
+    case Quantity::reaction_force:
+      return component(r.reactions[place_of(scene.dirichlet, m.of)].force, m.component);
+    case Quantity::reaction_moment:
+      return component(r.reactions[place_of(scene.dirichlet, m.of)].moment, m.component);
+    case Quantity::volume_error: return r.volume_error;
+    case Quantity::constitutive_residual: return r.constitutive_residual;
+    case Quantity::min_J: return r.min_J;
+    case Quantity::max_J: return r.max_J;
+    case Quantity::elastic_energy: return r.elastic_energy;
+    case Quantity::kinetic_energy: return r.kinetic_energy;
+    case Quantity::newton_iterations: break;
+  }
+  int sum = 0;
+  for (const StepRecord& s : records) sum += s.step <= r.step ? s.iterations : 0;
+  return sum;
+}
+
+}  // namespace
+
+std::vector<MetricValue> evaluate_metrics(const SceneDef& scene, const std::vector<StepRecord>& records) {
+  std::vector<MetricValue> out;
+  if (records.empty()) return out;
+  const StepPlan plan = plan_steps(scene.analysis);
+  for (const MetricDef& m : scene.metrics) {
+    MetricValue v{m, std::nan(""), true, {}, {}};
+    const int step = m.time ? static_cast<int>(std::lround(*m.time / plan.h)) : plan.steps;
+    const auto it = std::find_if(records.begin(), records.end(), [&](const StepRecord& r) {
+      return r.step == step && std::abs(r.time - step * plan.h) <= 1e-6 * plan.h;
+    });
+    v.reached = it != records.end();
+    // A number of the end is shown as far as the run got, but not held against its reference.
+    if (v.reached || !m.time) v.value = m.scale * quantity(scene, m, records, v.reached ? *it : records.back());
+    if (v.reached && m.reference) {
+      const double difference = v.value - *m.reference;
+      v.error = *m.reference == 0 ? difference : difference / std::abs(*m.reference);
+      if (m.tolerance) v.within = std::abs(*v.error) <= *m.tolerance;
+    }
+    out.push_back(std::move(v));
+  }
+  return out;
+}
+
+}  // namespace isochor

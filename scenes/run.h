@@ -1,0 +1,93 @@
+// Runs a scene: the same for the command line, the tests, the studies and the pages of the documentation.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace isochor {
+
+struct CavityState {
+  double pressure = 0;  // [Pa]
+  double volume = 0;    // [m^3]
+};
+struct Reaction {
+  Vec3 force{};   // [N]
+  Vec3 moment{};  // about the origin [N m]
+};
+
+// What is known after a step; the first record is the rest state.
+struct StepRecord {
+  int step = 0;
+  double time = 0;  // [s], or load factor
+  int iterations = 0, substeps = 0, rejected = 0, factorizations = 0;
+  double force_residual = 0, row_residual = 0, constitutive_residual = 0;
+  double volume_error = 0;  // the largest of all bodies
+  double min_J = 1, max_J = 1;
+  double elastic_energy = 0, kinetic_energy = 0;  // [J]
+  double seconds = 0;                             // of this step's solve
+  std::vector<Vec3> probes;                       // displacement of each probe [m]
+  std::vector<CavityState> cavities;
+  std::vector<Reaction> reactions;  // of each dirichlet support
+};
+
+enum class RunStatus : std::uint8_t {
+  converged,      // every step
+  not_converged,  // up to the last record
+  budget,         // stopped by the time allowed
+  interrupted,
+  bad_input,  // nothing was solved
+  failed,     // outputs could not be written, or a fault of ours
+};
+const char* to_string(RunStatus status);
+
+struct MetricValue {
+  MetricDef def;
+  double value = 0;
+  bool reached = true;                // false: its time was not
+  std::optional<double> error;        // relative to the reference; of a reference 0: absolute
+  std::optional<bool> within;         // of the tolerance
+};
+
+struct RunOptions {
+  std::string folder;  // where outputs go; empty: none are written
+  int threads = 0;     // 0: all the machine has
+  std::optional<double> budget;                          // [s] of wall time
+  std::function<bool()> stop;                            // asked at every iteration; true interrupts
+  std::function<void(const StepRecord&, int steps)> on_step;
+  std::function<void(const std::string&)> log;           // warnings
+};
+
+struct RunResult {
+  RunStatus status = RunStatus::bad_input;
+  std::string reason;  // empty when converged; else one sentence
+  std::string scene;
+  int steps_asked = 0;
+  std::vector<StepRecord> records;
+  int newton_iterations = 0, factorizations = 0;
+  double wall_s = 0;
+  StageTimes stages;
+  WorldSize size;
+  Index elements = 0;
+  int threads = 0;
+  std::uint64_t state_hash = 0;
+  std::vector<std::string> probes, cavities, supports;  // names, in the order of the records' lists
+  std::vector<MetricValue> metrics;
+  std::vector<std::string> warnings;
+};
+
+RunResult run_scene(const SceneDef& scene, const RunOptions& options = {});
+
+std::vector<MetricValue> evaluate_metrics(const SceneDef& scene, const std::vector<StepRecord>& records);
+
+// The text of summary.json.
+std::string summary_json(const RunResult& result);
+
+std::string version();
+std::string build_description();    // build type and compiler
+std::string machine_description();  // processor and its threads
+
+}  // namespace isochor

@@ -1,0 +1,29 @@
+// The results page of a run.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "results_page.h"
+#include "scenes/outputs.h"
+
+namespace isochor {
+
+class RunPage {
+ public:
+  // Null when this build has no results page.
+  static std::unique_ptr<RunPage> start(const RunView& view);
+  void append(const RunView& view, const std::vector<BodyFields>& fields);
+  Result<void> write(const RunView& view, const std::string& path);
+
+ private:
+  RunPage(ResultsRecorder recorder, std::vector<std::vector<Index>> vertices)
+      : recorder_(std::move(recorder)), vertices_(std::move(vertices)) {}
+
+  ResultsRecorder recorder_;
+  std::vector<std::vector<Index>> vertices_;  // by body: the node of each vertex
+  std::string failure_;
+};
+
+}  // namespace isochor

@@ -1,0 +1,146 @@
+// A scene as plain data: bodies, effects, analysis, what to watch and what to compare with.
+//
+// The same data come from a C++ program (scenes/programs), from a scene file (scenes/scene.schema.json) or from
+// a test; build() turns them into a world and run_scene() of run.h runs them. Nothing here throws.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "isochor/effects.h"
+#include "isochor/generate.h"
+#include "isochor/world.h"
+
+namespace isochor {
+
+enum class MaterialLaw : std::uint8_t { neo_hookean, stable_neo_hookean };
+
+struct MaterialDef {
+  std::string region;  // empty: every region not named elsewhere
+  MaterialLaw law = MaterialLaw::neo_hookean;
+  ElasticConstants constants;
+  double density = 1000;  // [kg/m^3]
+};
+
+struct MeshFile {
+  std::string path;  // relative to SceneDef::folder
+  double scale = 1;  // multiplies coordinates: 1e-3 for a file in millimeters
+};
+
+struct SceneBody {
+  std::string name = "body";
+  std::variant<MeshFile, BoxMeshDef> mesh;
+  Element element = Element::tet4_edge_smoothed;
+  std::vector<MaterialDef> materials;
+  std::optional<double> guard_stiffness;  // see BodyDef
+  double guard_threshold = 0.5;
+};
+
+// Volume rows of a body; `none` leaves it to its complete one-field energy, which locks near nu = 0.5.
+struct VolumeRows {
+  VolumeDef def;
+  bool none = false;
+};
+
+enum class AnalysisType : std::uint8_t { statics, dynamics };
+
+struct AnalysisDef {
+  AnalysisType type = AnalysisType::statics;
+  double duration = 1;  // [s]; statics: final load factor
+  int steps = 10;       // results are reported this often
+  std::optional<double> step;  // [s], instead of steps
+  Solver solver = Solver::automatic;
+  int max_iterations = 60;
+  double force_tolerance = 1e-9, row_tolerance = 1e-10;  // see WorldOptions
+  double smallest_fraction = 1.0 / 1024;
+};
+
+// A named material point: results are interpolated in the cell that holds it at rest.
+struct ProbeDef {
+  std::string name;
+  BodyId body{};
+  Vec3 point{};  // rest position [m]
+};
+
+struct OutputDef {
+  int every = 1;     // a .vtu every so many steps and at the end; 0: none
+  bool page = true;  // the HTML results page
+};
+
+enum class Quantity : std::uint8_t {
+  displacement,     // of a probe [m]
+  cavity_pressure,  // [Pa]
+  cavity_volume,    // [m^3]
+  reaction_force,   // of a support [N]
+  reaction_moment,  // of a support, about the origin [N m]
+  volume_error,
+  constitutive_residual,
+  min_J,
+  max_J,
+  elastic_energy,     // [J]
+  kinetic_energy,     // [J]
+  newton_iterations,  // of all steps up to then
+};
+enum class Component : std::uint8_t { magnitude, x, y, z };
+
+// A number of the scene that has a name, where known with the reference it is held against.
+struct MetricDef {
+  std::string name;
+  Quantity quantity = Quantity::displacement;
+  std::string of;  // probe, cavity or support
+  Component component = Component::magnitude;
+  double scale = 1;                 // multiplies the quantity: 4 for a quarter model, 1e3 for millimeters
+  std::optional<double> time;       // of a reported step; absent: the end
+  std::optional<double> reference;  // after scaling
+  std::optional<double> tolerance;  // relative; of a reference 0: absolute
+  std::string source;               // where the reference is from
+  std::string unit;
+};
+
+struct SceneDef {
+  std::string name = "scene";  // names the outputs
+  std::string title, description;
+  std::string folder;  // relative mesh paths start here; not part of a scene file
+  // Effects name their body by its place in this list.
+  std::vector<SceneBody> bodies;
+  // Absent: nodal rows on every body. Bodies that a list leaves out have the complete one-field energy.
+  std::optional<std::vector<VolumeRows>> volumes;
+  std::vector<DirichletDef> dirichlet;
+  std::vector<CavityDef> cavities;
+  std::vector<TractionDef> tractions;
+  std::vector<PointForceDef> forces;
+  Vec3 gravity{};                             // [m/s^2]
+  Curve gravity_amount = Curve::constant(1);  // scales it over time
+  AnalysisDef analysis;
+  std::vector<ProbeDef> probes;
+  OutputDef outputs;
+  std::vector<MetricDef> metrics;
+};
+
+// Steps of the analysis and their length [s].
+struct StepPlan {
+  int steps = 0;
+  double h = 0;
+};
+StepPlan plan_steps(const AnalysisDef& analysis);
+
+// Refuses what contradicts itself without looking at a mesh: names used twice, metrics of probes that do not
+// exist, steps that do not divide. Messages start with the place, as in "metrics[2].of".
+Result<void> check_scene(const SceneDef& scene);
+
+struct BuiltScene {
+  World world;
+  std::vector<BodyId> bodies;
+  std::vector<EffectId> dirichlet, cavities, tractions, forces;
+};
+
+struct BuildOptions {
+  int threads = 0;  // 0: all the machine has
+};
+
+// Reads meshes, makes materials and effects, compiles the world. Errors are those of bad input.
+Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options = {});
+
+}  // namespace isochor
