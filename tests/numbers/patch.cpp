@@ -1,0 +1,33 @@
+// Patch test: a boundary that follows an affine map takes the inside with it, for every element and both
+// formulations.
+#include "numbers/cube.h"
+
+using namespace isochor;
+using namespace test;
+
+TEST_CASE("an affine boundary makes an affine body") {
+  const double G[3][3] = {{1.15, 0.2, -0.1}, {0.05, 0.9, 0.15}, {-0.1, 0.1, 1.1}};
+  const auto map = [&](const Vec3& X) {
+    Vec3 x{};
+    for (int i = 0; i < 3; ++i) x[i] = G[i][0] * X.x + G[i][1] * X.y + G[i][2] * X.z;
+    return x;
+  };
+  for (const Element element : kElements) {
+    for (const double nu : {0.0, 0.3, 0.49, 0.4999}) {
+      for (const int space : {-1, 0, 1, 2}) {
+        INFO(name_of(element) << ", nu = " << nu << ", rows " << space);
+        World world = make_world(static_options());
+        const BodyId body = add_body(world, uneven_cube(), element, neo_hookean(1e5, nu));
+        if (space >= 0) add_volume(world, body, static_cast<VolumeSpace>(space));
+        move_linearly(world, body, {"x0", "x1", "y0", "y1", "z0", "z1"}, {},
+                      [&](const Vec3& X) { return map(X) - X; });
+        must_advance(world);
+        CHECK(distance_from(world, body, map) < 1e-9);
+        const BodyFields f = world.fields(body);
+        double size = 0;
+        for (const double s : f.cell_stress) size = std::max(size, std::abs(s));
+        for (std::size_t k = 0; k < 6; ++k) CHECK(stress_error(f, k, f.cell_stress[k]) < 1e-8 * size);
+      }
+    }
+  }
+}
