@@ -104,6 +104,33 @@ Json json_of(const SceneDef& scene) {
   return json;
 }
 
+// Short values on one line, so that vectors and curves read as such.
+std::string inline_text(const Json& json) {
+  if (!json.is_structured()) return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text;
+  for (const auto& [key, value] : json.items()) {
+    text += text.empty() ? "" : ", ";
+    if (json.is_object()) text += Json(key).dump() + ": ";
+    text += inline_text(value);
+  }
+  return json.is_object() ? "{" + text + "}" : "[" + text + "]";
+}
+
+std::string pretty(const Json& json, std::size_t indent) {
+  constexpr std::size_t kWidth = 100;
+  const std::string line = inline_text(json);
+  if (!json.is_structured() || json.empty() || (indent > 0 && indent + line.size() < kWidth)) return line;
+  const std::string margin(indent + 2, ' ');
+  std::string text;
+  for (const auto& [key, value] : json.items()) {
+    text += (text.empty() ? "" : ",\n") + margin;
+    const std::string lead = json.is_object() ? Json(key).dump() + ": " : "";
+    text += lead + pretty(value, indent + 2);
+  }
+  const std::string end = "\n" + std::string(indent, ' ');
+  return json.is_object() ? "{\n" + text + end + "}" : "[\n" + text + end + "]";
+}
+
 std::string described(const std::string& source, const Overrides& overrides) {
   std::string text = source;
   for (const auto& o : overrides) text += " --set " + o;
@@ -147,7 +174,7 @@ Result<SceneDef> override_scene(const SceneDef& scene, const Overrides& override
 }
 
 std::string to_json(const SceneDef& scene) {
-  return json_of(scene).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return pretty(json_of(scene), 0) + "\n";
 }
 
 }  // namespace isochor

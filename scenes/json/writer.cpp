@@ -4,6 +4,11 @@
 
 namespace isochor::scene_json {
 
+Json plain_number(double value) {
+  const bool whole = value == std::floor(value) && std::abs(value) < 1e15;
+  return whole ? Json(static_cast<std::int64_t>(value)) : Json(value);
+}
+
 void Writer::number_or_inf(const char* key, double value, double standard) {
   if (std::isinf(value)) json_[key] = "inf";
   else number(key, value, standard);
@@ -42,11 +47,11 @@ void Writer::required_curve(const char* key, const Curve& value, CurveStart star
   const bool constant = scene_.analysis.type == AnalysisType::dynamics || start == CurveStart::constant;
   const double first = start == CurveStart::zero ? 0 : 1;
   if (constant && p.size() == 1) {
-    json_[key] = p[0][1];
+    json_[key] = plain_number(p[0][1]);
   } else if (!constant && p.size() == 2 && p[0] == std::array{0.0, first} && p[1][0] == 1) {
-    json_[key] = p[1][1];
+    json_[key] = plain_number(p[1][1]);
   } else {
-    for (const auto& point : p) json_[key].push_back(Json::array({point[0], point[1]}));
+    for (const auto& point : p) json_[key].push_back(Json::array({plain_number(point[0]), plain_number(point[1])}));
   }
 }
 

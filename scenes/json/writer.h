@@ -9,6 +9,9 @@ namespace isochor::scene_json {
 
 using Json = nlohmann::ordered_json;
 
+// Whole numbers without a decimal point.
+Json plain_number(double value);
+
 class Writer {
  public:
   Writer(Json& json, const SceneDef& scene) : json_(json), scene_(scene) { json_ = Json::object(); }
@@ -18,11 +21,11 @@ class Writer {
   }
   void required_text(const char* key, const std::string& value) { json_[key] = value; }
   void number(const char* key, double value, double standard) {
-    if (value != standard) json_[key] = value;
+    if (value != standard) json_[key] = plain_number(value);
   }
   void number_or_inf(const char* key, double value, double standard);
   void optional_number(const char* key, const std::optional<double>& value) {
-    if (value) json_[key] = *value;
+    if (value) json_[key] = plain_number(*value);
   }
   void integer(const char* key, int value, int standard) {
     if (value != standard) json_[key] = value;
@@ -44,7 +47,7 @@ class Writer {
   void points(const char* key, const std::vector<Vec3>& value);
   void boxes(const char* key, const std::vector<std::array<Vec3, 2>>& value);
   void directions(const char* key, const std::vector<Vec3>& value);
-  void angle(const char* radians, const char*, double value) { json_[radians] = value; }
+  void angle(const char* radians, const char*, double value) { json_[radians] = plain_number(value); }
   void body(const char* key, BodyId value);
   void curve(const char* key, const Curve& value, CurveStart start, bool matters) {
     if (matters) required_curve(key, value, start);
@@ -96,7 +99,7 @@ class Writer {
       write(all.back(), item);
     }
   }
-  static Json list_of(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+  static Json list_of(const Vec3& v) { return Json::array({plain_number(v.x), plain_number(v.y), plain_number(v.z)}); }
 
   Json& json_;
   const SceneDef& scene_;

@@ -1,0 +1,173 @@
+// The tool as a shell sees it: exit codes, outputs, signals.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "catch.h"
+
+using Json = nlohmann::json;
+using Catch::Matchers::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string slurp(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::stringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+struct Outcome {
+  int code = -1;
+  std::string out, err;
+};
+
+class Shell {
+ public:
+  Shell() : folder_(fs::temp_directory_path() / std::string("isochor_cli_").append(std::to_string(::getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~Shell() {
+    std::error_code code;
+    fs::remove_all(folder_, code);
+  }
+  const fs::path& folder() const { return folder_; }
+
+  // Runs in the shell's own folder.
+  Outcome run(const std::string& arguments) const {
+    std::string command = "cd '";
+    command.append(folder_.string()).append("' && '" ISOCHOR_BINARY "' ").append(arguments);
+    command.append(" > out.txt 2> err.txt");
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000, slurp(folder_ / "out.txt"), slurp(folder_ / "err.txt")};
+  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+
+ private:
+  fs::path folder_;
+};
+
+const char* const kBlock = R"({
+  "bodies": [{"name": "block", "mesh": {"box": {"upper": [2, 1, 1], "divisions": [2, 1, 1]}},
+              "materials": [{"young": 1000, "poisson": 0.5}]}],
+  "analysis": {"steps": 2},
+  "dirichlet": [{"name": "wall", "where": {"surfaces": "x0"}}],
+  "tractions": [{"name": "pull", "surface": "x1", "traction": [100, 0, 0]}],
+  "probes": [{"name": "tip", "point": [2, 0.5, 0.5]}]
+})";
+
+}  // namespace
+
+TEST_CASE("help, list and version") {
+  Shell shell;
+  for (const char* command : {"--help", "run --help", "list --help", "check --help", "version --help", "list",
+                              "list --json", "version", "version --json", "show finger"}) {
+    INFO(command);
+    const Outcome o = shell.run(command);
+    CHECK(o.code == 0);
+    CHECK(o.out.size() > 40);
+  }
+  CHECK_THAT(shell.run("list").out, Contains("finger") && Contains("cantilever"));
+  CHECK(Json::parse(shell.run("list --json").out).size() >= 12);
+  CHECK(Json::parse(shell.run("version --json").out).contains("version"));
+}
+
+TEST_CASE("wrong arguments are bad input") {
+  Shell shell;
+  for (const char* command : {"", "fly", "run --threads many", "run --threads -1", "run --budget 0", "run nosuchscene",
+                              "run no/such/file.json", "run finger --set", "run finger --set x", "check",
+                              "check no.msh", "run finger --bogus", "run finger --set cavities[0].presure=1"}) {
+    INFO(command);
+    const Outcome o = shell.run(command);
+    CHECK(o.code == 2);
+    CHECK(!(o.err + o.out).empty());
+  }
+  CHECK_THAT(shell.run("run finger --set cavities[0].presure=1").err, Contains("cavities[0].presure"));
+  CHECK_FALSE(fs::exists(shell.folder() / "out"));
+}
+
+TEST_CASE("a scene file runs and writes where it is told") {
+  Shell shell;
+  shell.write("block.json", kBlock);
+  const Outcome o = shell.run("run block.json --out here --threads 1");
+  INFO(o.err);
+  CHECK(o.code == 0);
+  CHECK_THAT(o.out, Contains("2/2") && Contains("converged"));
+  const Json j = Json::parse(slurp(shell.folder() / "here/summary.json"));
+  CHECK(j["status"] == "converged");
+  CHECK(j["threads"] == 1);
+  CHECK(fs::exists(shell.folder() / "here/block.pvd"));
+  CHECK(Json::parse(shell.run("run block.json --json").out)["state_hash"] == j["state_hash"]);
+  CHECK(shell.run("run block.json --quiet").out.empty());
+}
+
+TEST_CASE("the output folder must be writable before anything is solved") {
+  Shell shell;
+  shell.write("block.json", kBlock);
+  shell.write("file", "");
+  for (const char* folder : {"/proc/nowhere", "file", "file/inside"}) {
+    INFO(folder);
+    const Outcome o = shell.run(std::string("run block.json --out ").append(folder));
+    CHECK(o.code == 2);
+    CHECK(o.out.empty());
+  }
+}
+
+TEST_CASE("no convergence and a spent budget have codes of their own") {
+  Shell shell;
+  shell.write("block.json", kBlock);
+  CHECK(shell.run("run block.json --set analysis.max_iterations=1 --set tractions.pull.amount=1000").code == 3);
+  CHECK(Json::parse(slurp(shell.folder() / "out/block/summary.json"))["status"] == "not_converged");
+  CHECK(shell.run("run block.json --budget 1e-6").code == 4);
+}
+
+TEST_CASE("check judges meshes") {
+  Shell shell;
+  const Outcome good = shell.run("check " ISOCHOR_SCENES "/meshes/tube.msh");
+  CHECK(good.code == 0);
+  CHECK_THAT(good.out, Contains("chamber") && Contains("usable"));
+  shell.write("broken.msh", "$MeshFormat\n4.1 0 8\n");
+  CHECK(shell.run("check broken.msh").code == 2);
+  const Outcome both = shell.run("check broken.msh " ISOCHOR_SCENES "/meshes/tube.msh --json");
+  CHECK(both.code == 2);
+  CHECK(Json::parse(both.out).size() == 2);
+}
+
+TEST_CASE("an interrupt ends a run in good order") {
+  Shell shell;
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const fs::path out = shell.folder() / "stopped";
+    fs::remove_all(out);
+    const pid_t child = ::fork();
+    if (child == 0) {
+      // Silent, and long enough to be caught on the way.
+      if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr)) _exit(99);
+      ::execl(ISOCHOR_BINARY, "isochor", "run", "tube", "--set", "analysis.steps=500", "--threads", "1", "--out",
+              out.c_str(), static_cast<char*>(nullptr));
+      _exit(99);
+    }
+    REQUIRE(child > 0);
+    for (int wait = 0; wait < 2000 && !fs::exists(out / "frames/tube_00001.vtu"); ++wait) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ::kill(child, signal);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    CHECK(WIFEXITED(status));
+    CHECK(WEXITSTATUS(status) == 130);
+    const Json j = Json::parse(slurp(out / "summary.json"));
+    CHECK(j["status"] == "interrupted");
+    CHECK(j["steps"].get<int>() >= 1);
+    CHECK(fs::exists(out / "tube.pvd"));
+    CHECK_FALSE(slurp(out / "steps.csv").empty());
+  }
+}
