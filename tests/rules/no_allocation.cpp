@@ -1,0 +1,53 @@
+// Rule: no allocation in a warm step, outside the third-party solver.
+#include "catch.h"
+#include "rules/instruments.h"
+#include "support/allocations.h"
+#include "support/worlds.h"
+
+using namespace isochor;
+using namespace test;
+
+TEST_CASE("a warm Newton solve allocates nothing") {
+  if (!allocations_are_counted()) return;
+  for (const Element element : {Element::tet4, Element::tet4_edge_smoothed, Element::tet10}) {
+    INFO(name_of(element));
+    SmallProblem p(element, 900, std::make_unique<DenseSolver>());
+    REQUIRE(p.solve(0.2).status == NewtonStatus::converged);
+    p.data->at_time(*p.scene.system, 0.4);
+    const NewtonProblem problem = p.data->problem();
+    const AllocationCount allocations;
+    const NewtonReport r = p.newton->solve(problem, {}, p.x, p.lambda);
+    p.data->at_time(*p.scene.system, 0.6);
+    const long count = allocations.count();
+    CHECK(r.iterations > 0);
+    CHECK(count == 0);
+  }
+}
+
+TEST_CASE("a step of the world allocates no more than its linear solver") {
+  if (!allocations_are_counted()) return;
+  // The same solver through the world and through Newton alone.
+  WorldOptions options = static_options();
+  options.solver = Solver::eigen;
+  World world = make_world(options);
+  const BodyId body = add_body(world, box({3, 1, 1}, {3, 1, 1}), Element::tet4, neo_hookean(1e5, 0.4999));
+  add_volume(world, body);
+  hold(world, body, {"x0"});
+  TractionDef pull;
+  pull.surface = "x1";
+  pull.traction = {0, 900, 0};
+  pull.amount = Curve::ramp(1);
+  value(world.add(traction(pull)));
+  SmallProblem p(Element::tet4, 900, make_linear_solver(SolverKind::eigen, 100));
+  REQUIRE(world.step(0.25).status == StepStatus::converged);
+  REQUIRE(p.solve(0.25).status == NewtonStatus::converged);
+  const AllocationCount of_world;
+  const StepReport w = world.step(0.25);
+  const long by_world = of_world.count();
+  const AllocationCount of_newton;
+  const NewtonReport n = p.solve(0.5);
+  const long by_newton = of_newton.count();
+  CHECK(w.factorizations == n.factorizations);
+  CHECK(w.iterations == n.iterations);
+  CHECK(by_world == by_newton);
+}
