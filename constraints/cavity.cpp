@@ -99,8 +99,8 @@ Result<std::vector<std::vector<Index>>> boundary_loops(const std::vector<Face>& 
   return loops;
 }
 
-// Fan over a loop from the corner that comes first by its rest position: the cap of a free rim is then the same
-// however the nodes are numbered.
+// Fan over a loop from the corner that comes first by its rest position: the cap of a free rim is then the
+// same however the nodes are numbered.
 void add_cap(EnclosedVolumePool& pool, std::vector<Index> loop, std::span<const Vec3> rest, bool curved) {
   const std::size_t stride = curved ? 2 : 1, corners = loop.size() / stride;
   std::size_t apex = 0;
