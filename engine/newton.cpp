@@ -249,21 +249,30 @@ void Newton::position_gap(const NewtonProblem& p, std::span<const Vec3> x) {
   }
 }
 
-// Assembles and factors; mends a wrong inertia first by projecting the stencils' Hessians, then by shifting.
+// Assembles and factors; mends a wrong inertia by a shift of the displacement block, small at first, and when
+// that grows out of proportion by the stencils' projected Hessians.
 bool Newton::factor(const NewtonProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
                     NewtonReport& report) {
   if (factor_shifted(p.mass_scale, 0, report)) return true;
   if (report.status == NewtonStatus::out_of_memory) return false;
+  ++report.shifted;
+  // Starting from a third of what the last wrong inertia took finds the size in one or two trials.
+  double shift = shift_ > 0 ? std::max(1e-4, shift_ / 3) : 1e-3;
+  for (; shift < 1; shift *= 6) {
+    if (factor_shifted(p.mass_scale, shift, report)) {
+      shift_ = shift;
+      return true;
+    }
+    if (report.status == NewtonStatus::out_of_memory) return false;
+  }
   {
     const Stopwatch watch(seconds_.evaluate);
     assembly_.evaluate(Want::hessian, Definiteness::projected, x, lambda, p.prescribed);
   }
   ++report.projected;
-  if (factor_shifted(p.mass_scale, 0, report)) return true;
-  ++report.shifted;
-  for (double shift = 1e-6; shift < 1e3; shift *= 30) {
-    if (report.status == NewtonStatus::out_of_memory) return false;
+  for (shift = 0; shift < 1e3; shift = std::max(1e-3, 30 * shift)) {
     if (factor_shifted(p.mass_scale, shift, report)) return true;
+    if (report.status == NewtonStatus::out_of_memory) return false;
   }
   report.status = NewtonStatus::singular;
   return false;
@@ -473,9 +482,9 @@ bool Newton::search(const NewtonProblem& p, std::span<Vec3> x, std::span<double>
 // price. True when the state is in balance. A correction that does not pay is dropped.
 bool Newton::correct(const NewtonProblem& p, const NewtonOptions& options, std::span<Vec3> x,
                      std::span<double> lambda, NewtonReport& report) {
-  constexpr double worthwhile = 0.15;  // less of a reduction and a new factorization is the better buy
+  constexpr double worthwhile = 0.3;  // less of a reduction and a new factorization is the better buy
   if (!full_step_ || report.force_residual > 1e-2 || report.row_residual > 1e-2) return false;
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < 6; ++k) {
     position_gap(p, x);
     if (has_gap_ || !direction(lambda, report)) return false;
     const double force = report.force_residual, row = report.row_residual;
@@ -501,6 +510,7 @@ NewtonReport Newton::solve(const NewtonProblem& p, const NewtonOptions& options,
   };
   if (!all_finite(p)) return fail(NewtonStatus::not_finite);
   gamma_ = 0.1;
+  shift_ = 0;
   for (std::size_t i = 0; i < stiffness_.size(); ++i) {
     stiffness_[i] = rest_stiffness_[i] + p.mass_scale * system_->parts().mass[i];
   }

@@ -125,6 +125,7 @@ class Newton {
   std::int64_t factor_nonzeros_ = 0;
   int analyses_ = 0;
   bool analyzed_ = false, has_gap_ = false, full_step_ = false;
+  double shift_ = 0;    // the last one that mended the inertia in this solve
   double gamma_ = 0.1;  // more would follow the volume too closely, less would lose descent; raised as needed
 
   std::vector<double> values_, scale_, rhs_, solution_, theta_, row_work_, stiffness_, magnitude_,

@@ -148,7 +148,7 @@ void World::Impl::evaluate_data(double t) {
   }
 }
 
-NewtonReport World::Impl::attempt(double h) {
+NewtonReport World::Impl::attempt(double h, int max_iterations) {
   const double t_new = state.t + h;
   evaluate_data(t_new);
   options.scheme->predict(state, h, predicted);
@@ -160,7 +160,7 @@ NewtonReport World::Impl::attempt(double h) {
   problem.prescribed = prescribed;
   problem.position = position;
   NewtonOptions newton_options;
-  newton_options.max_iterations = options.max_iterations;
+  newton_options.max_iterations = max_iterations;
   newton_options.force_tolerance = options.force_tolerance;
   newton_options.row_tolerance = options.row_tolerance;
   newton->progress = nullptr;
@@ -257,7 +257,7 @@ StepReport World::step(double h) {
   w.begin_amounts(w.state.t, w.state.t + h);
   StepReport report;
   const double t_target = w.state.t + h;
-  const NewtonReport r = w.attempt(h);
+  const NewtonReport r = w.attempt(h, w.options.max_iterations);
   accumulate(report, r);
   report.substeps = 1;
   if (r.status == NewtonStatus::cancelled) {
@@ -284,18 +284,26 @@ StepReport World::advance(double h) {
   const double t0 = w.state.t, t_end = t0 + h;
   w.begin_amounts(t0, t_end);
   StepReport report;
+  constexpr int patience = 25;
   double increment = h;
+  int successes = 1;
   while (w.state.t < t_end - 1e-12 * h) {
     // The last increment lands on the end exactly.
     const double remaining = t_end - w.state.t;
     const double dt = increment > 0.999 * remaining ? remaining : increment;
-    const NewtonReport r = w.attempt(dt);
+    // What converges at all does so in a dozen iterations; while the increment can still be cut, more are
+    // wasted.
+    const bool last_chance = 0.5 * dt < w.options.smallest_fraction * h;
+    const NewtonReport r =
+        w.attempt(dt, last_chance ? w.options.max_iterations : std::min(w.options.max_iterations, patience));
     accumulate(report, r);
     if (r.status == NewtonStatus::converged) {
       ++report.substeps;
-      if (r.iterations <= 12) increment = std::min(2 * dt, h);
+      // Behind a failure the increment grows again only after two successes in a row.
+      if (++successes >= 2) increment = std::min(2 * dt, h);
       continue;
     }
+    successes = 0;
     if (r.status == NewtonStatus::cancelled) {
       report.status = StepStatus::cancelled;
       report.reason = "cancelled by the host";

@@ -35,7 +35,7 @@ struct World::Impl {
   void allocate();
   void begin_amounts(double t0, double t1);
   void evaluate_data(double t);
-  NewtonReport attempt(double h);
+  NewtonReport attempt(double h, int max_iterations);
   StepReport invalid(std::string reason) const;
   void finish_report(StepReport& report, const StageSeconds& before, double total) const;
   // Evaluates forces and multipliers at the state.
