@@ -1,0 +1,207 @@
+#include "engine/solvers/direct_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+
+#include "engine/base.h"
+
+namespace isochor {
+namespace {
+
+// A relative residual below this is rounding: further refinement only shuffles the last bits.
+constexpr double rounding_level = 2 * std::numeric_limits<double>::epsilon();
+// A solution is usable when it solves a system this close to the one given.
+constexpr double acceptable_residual = 1e-10;
+
+// Infinity norm that does not lose a NaN, as std::max would.
+double max_norm(std::span<const double> v) {
+  double largest = 0, poison = 0;
+  for (const double x : v) {
+    largest = std::max(largest, std::abs(x));
+    poison += x * 0.0;
+  }
+  return largest + poison;
+}
+
+std::string check(const SymmetricPattern& p) {
+  const auto n = p.size;
+  if (n < 0) return "the pattern has a negative size";
+  if (n == 0) return {};
+  if (p.column_start.size() != at(n) + 1 || p.column_start.front() != 0 ||
+      p.row.size() != static_cast<std::size_t>(p.nonzeros())) {
+    return "the pattern's arrays do not fit its size";
+  }
+  for (Index c = 0; c < n; ++c) {
+    Index previous = c - 1;
+    if (p.column_start[at(c)] > p.column_start[at(c) + 1]) return "the pattern's columns are not in sequence";
+    for (auto k = p.column_start[at(c)]; k < p.column_start[at(c) + 1]; ++k) {
+      const Index r = p.row[static_cast<std::size_t>(k)];
+      if (r <= previous || r >= n) {
+        return "column " + std::to_string(c) +
+               " of the pattern must hold ascending rows of the lower triangle";
+      }
+      previous = r;
+    }
+  }
+  if (!p.group.empty()) {
+    if (p.group.size() != at(n)) return "the pattern's groups do not fit its size";
+    for (const Index g : p.group) {
+      if (g < 0 || g >= p.groups)
+        return "the pattern names group " + std::to_string(g) + ", which is out of range";
+    }
+  }
+  if (!p.multiplier.empty() && p.multiplier.size() != at(n))
+    return "the pattern's multipliers do not fit its size";
+  return {};
+}
+
+}  // namespace
+
+FactorReport DirectSolver::analyze(const SymmetricPattern& pattern) {
+  factored_ = false;
+  pattern_ = nullptr;
+  FactorReport report;
+  try {
+    report.message = check(pattern);
+    if (!report.message.empty()) {
+      report.status = FactorStatus::failed;
+      return report;
+    }
+    const auto n = at(pattern.size);
+    residual_.assign(n, 0);
+    correction_.assign(n, 0);
+    best_.assign(n, 0);
+    pattern_ = &pattern;
+    if (n > 0) report = analyze_pattern();
+  } catch (const std::bad_alloc&) {
+    report.status = FactorStatus::out_of_memory;
+  } catch (...) {
+    report.status = FactorStatus::failed;
+  }
+  if (report.status != FactorStatus::ok) pattern_ = nullptr;
+  return report;
+}
+
+FactorReport DirectSolver::factor(std::span<const double> values) {
+  factored_ = false;
+  FactorReport report;
+  try {
+    if (pattern_ == nullptr || values.size() != static_cast<std::size_t>(pattern_->nonzeros())) {
+      report.status = FactorStatus::failed;
+      report.message = pattern_ == nullptr ? "factor was called without a successful analyze"
+                                           : "the number of values is not that of the analysed pattern";
+      return report;
+    }
+    values_ = values;
+    if (pattern_->size == 0) {
+      report.negative_pivots = 0;
+      factored_ = true;
+      return report;
+    }
+    // Row sums of |A|, in the residual's storage. One NaN or infinity makes the sum of zeros NaN.
+    const double* const v = values.data();
+    std::fill(residual_.begin(), residual_.end(), 0.0);
+    double poison = 0;
+    for (Index c = 0; c < pattern_->size; ++c) {
+      double column = 0;
+      for (auto k = pattern_->column_start[at(c)]; k < pattern_->column_start[at(c) + 1]; ++k) {
+        const Index r = pattern_->row[static_cast<std::size_t>(k)];
+        const double a = std::abs(v[k]);
+        poison += v[k] * 0.0;
+        residual_[at(r)] += a;
+        if (r != c) column += a;
+      }
+      residual_[at(c)] += column;
+    }
+    norm_ = *std::max_element(residual_.begin(), residual_.end());
+    if (poison != 0 || std::isnan(poison) || !std::isfinite(norm_)) {
+      report.status = FactorStatus::not_finite;
+      report.message = "the matrix has a value that is not finite, or too large to sum";
+      return report;
+    }
+    report = factor_values();
+  } catch (const std::bad_alloc&) {
+    report.status = FactorStatus::out_of_memory;
+  } catch (...) {
+    report.status = FactorStatus::failed;
+  }
+  factored_ = report.status == FactorStatus::ok;
+  return report;
+}
+
+SolveReport DirectSolver::solve(std::span<const double> right_hand_side, std::span<double> solution) {
+  SolveReport report;
+  report.residual = std::numeric_limits<double>::infinity();
+  const std::size_t n = pattern_ == nullptr ? 0 : at(pattern_->size);
+  if (factored_ && right_hand_side.size() == n && solution.size() == n) {
+    if (n == 0) return {true, 0, 0};
+    try {
+      if (std::isfinite(max_norm(right_hand_side))) report = refine(right_hand_side, solution);
+    } catch (...) {
+      report.ok = false;
+    }
+  }
+  // Whatever went wrong, no NaN leaves here.
+  if (!std::isfinite(report.residual)) std::fill(solution.begin(), solution.end(), 0.0);
+  return report;
+}
+
+SolveReport DirectSolver::refine(std::span<const double> b, std::span<double> x) {
+  SolveReport report;
+  report.residual = std::numeric_limits<double>::infinity();
+  const double b_norm = max_norm(b);
+  std::copy(b.begin(), b.end(), x.begin());
+  if (!apply_inverse(x)) return report;
+  const auto relative = [&](std::span<const double> y) {
+    residual_norm_ = compute_residual(b, y);
+    const double scale = norm_ * max_norm(y) + b_norm;
+    return scale > 0 ? residual_norm_ / scale : residual_norm_;
+  };
+  report.residual = relative(x);
+  while (report.residual > rounding_level && report.refinements < max_refinements &&
+         std::isfinite(report.residual)) {
+    const double before = report.residual, norm_before = residual_norm_;
+    std::copy(residual_.begin(), residual_.end(), correction_.begin());
+    if (!apply_inverse(correction_)) break;
+    std::copy(x.begin(), x.end(), best_.begin());
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction_[i];
+    const double now = relative(x);
+    ++report.refinements;
+    if (!(now < before)) {  // worse, or NaN: keep what was there
+      std::copy(best_.begin(), best_.end(), x.begin());
+      residual_norm_ = norm_before;
+      break;
+    }
+    report.residual = now;
+    if (now > 0.5 * before) break;
+  }
+  report.ok = report.residual <= acceptable_residual;
+  return report;
+}
+
+double DirectSolver::compute_residual(std::span<const double> b, std::span<const double> x) {
+  const double* const v = values_.data();
+  const Index* const row = pattern_->row.data();
+  const std::int64_t* const start = pattern_->column_start.data();
+  double* const r = residual_.data();
+  std::copy(b.begin(), b.end(), residual_.begin());
+  for (Index c = 0; c < pattern_->size; ++c) {
+    const double xc = x[at(c)];
+    double sum = 0;
+    for (auto k = start[c]; k < start[c + 1]; ++k) {
+      const Index i = row[k];
+      if (i == c) {
+        sum += v[k] * xc;
+      } else {
+        r[i] -= v[k] * xc;
+        sum += v[k] * x[at(i)];
+      }
+    }
+    r[c] -= sum;
+  }
+  return max_norm(residual_);
+}
+
+}  // namespace isochor

@@ -1,0 +1,43 @@
+// What all direct backends share: checked input, iterative refinement in full precision, and the report.
+#pragma once
+
+#include <vector>
+
+#include "engine/linear_solver.h"
+
+namespace isochor {
+
+// A backend implements the three protected functions for a non-empty, well-formed matrix with finite values.
+class DirectSolver : public LinearSolver {
+ public:
+  FactorReport analyze(const SymmetricPattern& pattern) final;
+  FactorReport factor(std::span<const double> values) final;
+  SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) final;
+
+ protected:
+  virtual FactorReport analyze_pattern() = 0;
+  virtual FactorReport factor_values() = 0;
+  // Overwrites a right-hand side with the factor's solution of it; false when the backend fails.
+  virtual bool apply_inverse(std::span<double> x) = 0;
+
+  // The refined solution and how good it is. Also what a backend probes a doubtful factor with.
+  SolveReport refine(std::span<const double> b, std::span<double> x);
+
+  const SymmetricPattern& pattern() const { return *pattern_; }
+  std::span<const double> values() const { return values_; }
+  double norm() const { return norm_; }  // infinity norm of the values last given to factor
+  double last_residual_norm() const { return residual_norm_; }
+  int max_refinements = 5;
+
+ private:
+  // residual = b - A x; returns its infinity norm, NaN included.
+  double compute_residual(std::span<const double> b, std::span<const double> x);
+
+  const SymmetricPattern* pattern_ = nullptr;
+  std::span<const double> values_;
+  std::vector<double> residual_, correction_, best_;
+  double norm_ = 0, residual_norm_ = 0;
+  bool factored_ = false;
+};
+
+}  // namespace isochor

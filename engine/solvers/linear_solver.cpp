@@ -1,0 +1,42 @@
+#include "engine/linear_solver.h"
+
+#include "engine/solvers/cholmod_solver.h"
+#include "engine/solvers/eigen_solver.h"
+#include "engine/solvers/mumps_solver.h"
+#include "engine/solvers/ordering.h"
+
+namespace isochor {
+
+std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, Index size) {
+  if (blas_threads() == 0) set_blas_threads(1);
+  (void)size;
+  switch (kind) {
+    case SolverKind::mumps:
+      return make_mumps_solver();
+    case SolverKind::cholmod:
+      return make_cholmod_solver();
+    case SolverKind::eigen:
+      return make_eigen_solver();
+    case SolverKind::automatic:
+      break;
+  }
+  if (auto mumps = make_mumps_solver()) return mumps;
+  if (auto cholmod = make_cholmod_solver()) return cholmod;
+  return make_eigen_solver();
+}
+
+std::vector<SolverBackend> linear_solver_backends() {
+  std::vector<SolverBackend> backends;
+  if (const std::string v = mumps_version(); !v.empty()) backends.push_back({"MUMPS", v, "CeCILL-C"});
+  if (const std::string v = cholmod_version(); !v.empty()) {
+    // Only LGPL modules are called, but a distribution's library holds the GPL ones as well, and what a
+    // binary is linked against decides its licence.
+    backends.push_back(
+        {"CHOLMOD", v, "LGPL-2.1-or-later (simplicial); distribution builds contain GPL modules"});
+  }
+  backends.push_back({"Eigen", eigen_version(), "MPL-2.0"});
+  if (have_metis()) backends.push_back({"METIS (ordering)", std::string(metis_version()), "Apache-2.0"});
+  return backends;
+}
+
+}  // namespace isochor

@@ -1,0 +1,33 @@
+// Fill-reducing pivot sequence, computed on the quotient graph of a pattern's groups.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "engine/linear_solver.h"
+
+namespace isochor {
+
+enum class OrderingMethod : std::uint8_t {
+  best,      // METIS where it is built in, else minimum degree
+  metis,     // nested dissection
+  amd,       // approximate minimum degree
+  as_given,  // by group, as the caller numbered them
+};
+
+struct Ordering {
+  std::vector<Index> position;  // of an unknown in the pivot sequence
+  std::vector<Index> unknown;   // the inverse: which unknown is eliminated at a position
+  Index dense = 0;              // how many unknowns at the end were taken out of the graph as dense
+  OrderingMethod method = OrderingMethod::as_given;  // the one that was used
+};
+
+// Groups absent: every unknown is a group of its own. An unknown that touches a large part of all groups is
+// taken out of the graph, which it would only blur, and goes last; a group of multiplier rows alone is moved
+// behind the first group with an unknown that it constrains, for a zero diagonal is no pivot before that.
+Ordering order_unknowns(const SymmetricPattern& pattern, OrderingMethod method = OrderingMethod::best);
+
+bool have_metis();
+std::string_view metis_version();  // empty when not built in
+
+}  // namespace isochor
