@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "constraints/surface_pool.h"
 #include "engine/builder.h"
@@ -129,6 +130,141 @@ void add_cap(EnclosedVolumePool& pool, std::vector<Index> loop, std::span<const 
   }
 }
 
+// An opening that lies on several symmetry planes, such as that of an eighth of a sphere. Its nodes slide in
+// their planes, so a cap must stay in them too: a fan over nodes would cut the corner and pull on the rim.
+// The volume is taken from a point that all planes share, where their caps add nothing; a plane that misses
+// the point (the second of two parallel ones) gets a fan from a fixed apex.
+class SymmetryCaps {
+ public:
+  SymmetryCaps(const Builder& builder, double length) : builder_(builder), length_(length) {}
+
+  bool planar(const std::vector<Index>& loop) const {
+    const auto rest = builder_.rest();
+    Vec3 normal{};
+    const Vec3 o = rest[at(loop[0])];
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      normal += cross(rest[at(loop[i])] - o, rest[at(loop[(i + 1) % loop.size()])] - o);
+    }
+    const double size = std::sqrt(dot(normal, normal));
+    return size == 0 || std::all_of(loop.begin(), loop.end(), [&](Index n) {
+             return std::abs(dot(normal, rest[at(n)] - o)) <= 1e-7 * length_ * size;
+           });
+  }
+
+  // Finds the plane of every edge; false when an edge lies on none.
+  bool add_loop(const std::vector<Index>& loop, std::size_t stride) {
+    std::vector<std::size_t> planes;
+    for (std::size_t i = 0; i < loop.size(); i += stride) {
+      const Index a = loop[i], b = loop[(i + stride) % loop.size()];
+      const auto plane = plane_of(a, b, stride == 2 ? loop[i + 1] : a);
+      if (!plane) return false;
+      planes.push_back(*plane);
+    }
+    loops_.push_back({loop, stride, std::move(planes)});
+    return true;
+  }
+
+  // The common point nearest to `start`, and the apex of every plane.
+  Vec3 place(const Vec3& start) {
+    std::vector<std::size_t> active;
+    for (std::size_t k = 0; k < planes_.size() && active.size() < 3; ++k) {
+      Vec3 n = planes_[k].normal;
+      for (const std::size_t j : active) n -= dot(n, frame_[j]) * frame_[j];
+      frame_.resize(planes_.size());
+      if (dot(n, n) < 1e-12) continue;
+      frame_[k] = (1 / std::sqrt(dot(n, n))) * n;
+      active.push_back(k);
+    }
+    const auto project = [&](Vec3 x, std::size_t dependent) {
+      // Few planes, any angles: alternate until all hold.
+      for (int sweep = 0; sweep < 200; ++sweep) {
+        for (const std::size_t k : active) {
+          const bool parallel = std::abs(dot(planes_[k].normal, planes_[dependent].normal)) > 1 - 1e-9;
+          const Plane& p = planes_[parallel ? dependent : k];
+          x -= (dot(p.normal, x) - p.offset) * p.normal;
+        }
+      }
+      return x;
+    };
+    const Vec3 origin = planes_.empty() ? start : project(start, active[0]);
+    for (std::size_t k = 0; k < planes_.size(); ++k) {
+      planes_[k].apex = on(k, origin) ? origin : project(origin, k);
+    }
+    return origin;
+  }
+
+  // What closes the gap between the fans of two planes must lie in a plane through the origin.
+  bool fits(const Vec3& origin) const {
+    for (const Loop& loop : loops_) {
+      for (std::size_t e = 0; e < loop.planes.size(); ++e) {
+        const std::size_t k = loop.planes[e], l = loop.planes[(e + 1) % loop.planes.size()];
+        if (k == l || planes_[k].apex == planes_[l].apex) continue;
+        if (!(on(k, origin) && on(k, planes_[l].apex)) && !(on(l, origin) && on(l, planes_[k].apex)))
+          return false;
+      }
+    }
+    return true;
+  }
+
+  void add_to(EnclosedVolumePool& pool, const Vec3& origin) const {
+    for (const Loop& loop : loops_) {
+      for (std::size_t e = 0; e < loop.planes.size(); ++e) {
+        const Plane& plane = planes_[loop.planes[e]];
+        if (plane.apex == origin) continue;
+        const std::size_t i = e * loop.stride;
+        const Index edge[3] = {loop.nodes[i], loop.nodes[(i + loop.stride) % loop.nodes.size()],
+                               loop.nodes[(i + 1) % loop.nodes.size()]};
+        const bool curved = loop.stride == 2;
+        pool.add_face(std::span(edge, curved ? 3 : 2), curved ? fan3_rule() : fan2_rule(), plane.apex);
+      }
+    }
+  }
+
+ private:
+  struct Plane {
+    Vec3 normal{};
+    double offset = 0;
+    Vec3 apex{};
+  };
+  struct Loop {
+    std::vector<Index> nodes;
+    std::size_t stride;
+    std::vector<std::size_t> planes;  // of each edge
+  };
+
+  bool on(std::size_t k, const Vec3& x) const {
+    return std::abs(dot(planes_[k].normal, x) - planes_[k].offset) <= 1e-7 * length_;
+  }
+
+  // A direction in which both ends (and the middle) are held and along which the edge does not extend.
+  std::optional<std::size_t> plane_of(Index a, Index b, Index middle) {
+    const auto rest = builder_.rest();
+    std::optional<Vec3> found;
+    for (const Vec3& n : builder_.directions_given(a)) {
+      const auto of_b = builder_.directions_given(b);
+      const bool shared = std::any_of(of_b.begin(), of_b.end(),
+                                      [&](const Vec3& m) { return std::abs(dot(n, m)) > 1 - 1e-9; });
+      if (!shared || std::abs(dot(n, rest[at(b)] - rest[at(a)])) > 1e-7 * length_ ||
+          std::abs(dot(n, rest[at(middle)] - rest[at(a)])) > 1e-7 * length_) {
+        continue;
+      }
+      for (std::size_t k = 0; k < planes_.size(); ++k) {
+        if (std::abs(dot(planes_[k].normal, n)) > 1 - 1e-9 && on(k, rest[at(a)])) return k;
+      }
+      found = n;
+    }
+    if (!found) return std::nullopt;
+    planes_.push_back({*found, dot(*found, rest[at(a)]), {}});
+    return planes_.size() - 1;
+  }
+
+  const Builder& builder_;
+  double length_;
+  std::vector<Plane> planes_;
+  std::vector<Vec3> frame_;
+  std::vector<Loop> loops_;
+};
+
 class CavityRow final : public RowPool {
  public:
   CavityRow(std::string name, CavityControl control, double rest_volume, std::shared_ptr<Amount> amount)
@@ -209,15 +345,26 @@ class CavityEffect final : public EffectSource {
     Vec3 origin{};
     for (const Face& f : faces)
       origin += (1.0 / static_cast<double>(faces.size())) * builder.rest()[at(f[0])];
+    auto loops = boundary_loops(faces, who());
+    if (!loops) return Error{loops.error()};
+    SymmetryCaps symmetry(builder, builder.length());
+    std::vector<const std::vector<Index>*> fans;
+    for (const auto& loop : loops.value()) {
+      if (auto r = check_opening(builder, body, loop); !r) return Error{r.error()};
+      const bool flat = symmetry.planar(loop);
+      if (flat || !symmetry.add_loop(loop, per == 6 ? 2 : 1)) fans.push_back(&loop);
+    }
+    origin = symmetry.place(origin);
+    if (!symmetry.fits(origin)) {
+      return Error{who() +
+                   "an opening runs over symmetry planes that do not meet in one point; model more of the "
+                   "body, or close the surface"};
+    }
     auto pool = std::make_shared<EnclosedVolumePool>(def_.name, origin);
     const FaceRule& rule = per == 6 ? triangle6_rule() : triangle3_rule();
     for (const Face& f : faces) pool->add_face(f, rule);
-    auto loops = boundary_loops(faces, who());
-    if (!loops) return Error{loops.error()};
-    for (const auto& loop : loops.value()) {
-      if (auto r = check_opening(builder, body, loop); !r) return Error{r.error()};
-      add_cap(*pool, loop, builder.rest(), per == 6);
-    }
+    for (const auto* loop : fans) add_cap(*pool, *loop, builder.rest(), per == 6);
+    symmetry.add_to(*pool, origin);
     pool->finish();
     return finish(builder, pool);
   }

@@ -99,13 +99,35 @@ FaceRule make_bulge3() {
   return r;
 }
 
+// The first node becomes an apex that does not move.
+FaceRule detach_apex(const FaceRule& with) {
+  FaceRule r;
+  r.nodes = with.nodes - 1;
+  r.points = with.points;
+  r.weight = with.weight;
+  const auto split = [&](const std::vector<double>& n, std::vector<double>& rest, std::vector<double>& apex) {
+    for (std::size_t k = 0; k < n.size(); ++k) {
+      (k % static_cast<std::size_t>(with.nodes) == 0 ? apex : rest).push_back(n[k]);
+    }
+  };
+  split(with.N, r.N, r.apex_N);
+  split(with.N_u, r.N_u, r.apex_N_u);
+  split(with.N_v, r.N_v, r.apex_N_v);
+  return r;
+}
+
 struct FacePoint {
   Vec3 x, u, v;  // position, tangents
 };
 
 FacePoint face_point(const FaceRule& r, int q, std::span<const Index> nodes, std::span<const Vec3> x,
-                     const Vec3& origin) {
+                     const Vec3& origin, const Vec3& apex = {}) {
   FacePoint p{};
+  if (!r.apex_N.empty()) {
+    const Vec3 d = apex - origin;
+    const auto k = static_cast<std::size_t>(q);
+    p = {r.apex_N[k] * d, r.apex_N_u[k] * d, r.apex_N_v[k] * d};
+  }
   for (std::size_t a = 0; a < nodes.size(); ++a) {
     const std::size_t k = static_cast<std::size_t>(q) * nodes.size() + a;
     const Vec3 d = x[at(nodes[a])] - origin;
@@ -145,6 +167,15 @@ const FaceRule& bulge3_rule() {
   return rule;
 }
 
+const FaceRule& fan2_rule() {
+  static const FaceRule rule = detach_apex(triangle3_rule());
+  return rule;
+}
+const FaceRule& fan3_rule() {
+  static const FaceRule rule = detach_apex(cap4_rule());
+  return rule;
+}
+
 std::vector<std::pair<Index, double>> nodal_areas(std::span<const Index> face, std::span<const Vec3> rest) {
   const FaceRule& r = face.size() == 3 ? triangle3_rule() : triangle6_rule();
   std::vector<std::pair<Index, double>> areas;
@@ -165,7 +196,7 @@ double EnclosedVolumePool::face_volume(Index face, std::span<const Vec3> x) cons
   const FaceRule& r = *rule_[at(face)];
   double volume = 0;
   for (int q = 0; q < r.points; ++q) {
-    const FacePoint p = face_point(r, q, nodes, x, origin_);
+    const FacePoint p = face_point(r, q, nodes, x, origin_, apex_[at(face)]);
     volume += r.weight[static_cast<std::size_t>(q)] / 3 * dot(p.x, cross(p.u, p.v));
   }
   return volume;
@@ -190,7 +221,7 @@ void EnclosedVolumePool::evaluate(const StencilRequest& request, const StencilSl
     if (block) std::fill_n(block, n * (n + 1) / 2, Mat3{});
     for (std::size_t a = 0; a < n; ++a) slots.jacobian[first + a] = Vec3{};
     for (int q = 0; q < r.points; ++q) {
-      const FacePoint p = face_point(r, q, nodes, request.x, origin_);
+      const FacePoint p = face_point(r, q, nodes, request.x, origin_, apex_[at(f)]);
       const double w = r.weight[static_cast<std::size_t>(q)] / 3;
       const Vec3 uv = cross(p.u, p.v), vx = cross(p.v, p.x), xu = cross(p.x, p.u);
       const double* N = r.N.data() + static_cast<std::size_t>(q) * n;

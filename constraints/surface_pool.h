@@ -12,6 +12,8 @@ struct FaceRule {
   int nodes = 0, points = 0;
   std::vector<double> weight;       // points; the reference triangle has area 1/2
   std::vector<double> N, N_u, N_v;  // [q * nodes + a]
+  // The same, [q], of an apex that is no node and does not move; empty: none.
+  std::vector<double> apex_N, apex_N_u, apex_N_v;
 };
 const FaceRule& triangle3_rule();
 const FaceRule& triangle6_rule();
@@ -19,6 +21,9 @@ const FaceRule& triangle6_rule();
 const FaceRule& cap4_rule();
 // What lies between a curved edge (a, b, middle) and its chord.
 const FaceRule& bulge3_rule();
+// A flat cap from an apex that does not move: nodes (a, b), and (a, b, middle of ab).
+const FaceRule& fan2_rule();
+const FaceRule& fan3_rule();
 
 // Rest area that falls to each node of a face, integral of N_a dA [m^2]. 3 or 6 nodes.
 std::vector<std::pair<Index, double>> nodal_areas(std::span<const Index> face, std::span<const Vec3> rest);
@@ -29,10 +34,12 @@ std::vector<std::pair<Index, double>> nodal_areas(std::span<const Index> face, s
 class EnclosedVolumePool final : public StencilPool {
  public:
   EnclosedVolumePool(std::string name, Vec3 origin) : name_(std::move(name)), origin_(origin) {}
-  // Node order gives the normal; `rule` is one of those above and must outlive the pool.
-  void add_face(std::span<const Index> nodes, const FaceRule& rule) {
+  // Node order gives the normal; `rule` is one of those above and must outlive the pool. `apex` is for rules
+  // that have one.
+  void add_face(std::span<const Index> nodes, const FaceRule& rule, const Vec3& apex = {}) {
     nodes_.push(nodes);
     rule_.push_back(&rule);
+    apex_.push_back(apex);
   }
   void finish() { finish_topology(); }
 
@@ -48,6 +55,7 @@ class EnclosedVolumePool final : public StencilPool {
   std::string name_;
   Vec3 origin_;
   std::vector<const FaceRule*> rule_;
+  std::vector<Vec3> apex_;
 };
 
 }  // namespace isochor

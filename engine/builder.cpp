@@ -339,6 +339,12 @@ int Builder::given_directions(Index node) const {
   return static_cast<int>(given_[at(node)].size());
 }
 
+std::vector<Vec3> Builder::directions_given(Index node) const {
+  std::vector<Vec3> directions;
+  for (const Given& g : given_[at(node)]) directions.push_back(g.direction);
+  return directions;
+}
+
 std::vector<Index> Builder::nodes_given_by(const std::string& who) const {
   std::vector<Index> nodes;
   for (Index i = 0; i < static_cast<Index>(given_.size()); ++i) {

@@ -148,6 +148,7 @@ class Builder {
                          const std::string& who);
   // Number of directions in which a node is given so far.
   int given_directions(Index node) const;
+  std::vector<Vec3> directions_given(Index node) const;  // unit vectors
   std::vector<Index> nodes_given_by(const std::string& who) const;
   void warn(std::string text) { warnings_.push_back(std::move(text)); }
 
