@@ -47,7 +47,9 @@ Built build(Mesh mesh, Element element, WorldOptions options, const char* clampe
   body.element = element;
   body.materials = {{"", must(neo_hookean({.young = 100e3, .poisson = 0.5})), 1070}};
   const BodyId id = must(world.add_body(std::move(body)));
-  must(world.add(volume({.body = id})));
+  VolumeDef rows;
+  rows.body = id;
+  must(world.add(volume(rows)));
   DirichletDef fixed;
   fixed.where.body = id;
   fixed.where.surfaces = {clamped};

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <map>
 
 #include "constraints/volume_rows.h"
 #include "engine/builder.h"
@@ -17,14 +18,16 @@ class VolumeInstance final : public EffectInstance {
   std::vector<Nodal> nodal;
 
   void node_multipliers(const GaugeContext& c, std::span<double> pressure) const override {
+    // Where regions meet each has its own row; the node shows their mean.
+    std::map<Index, std::pair<double, int>> sums;
     for (const Nodal& n : nodal) {
       for (std::size_t r = 0; r < n.nodes.size(); ++r) {
-        const double p = c.state.lambda[at(c.system.first_row(n.row_pool)) + r];
-        double& out = pressure[at(n.nodes[r])];
-        // Where regions meet each has its own row; the node shows their mean.
-        out = std::isnan(out) ? p : 0.5 * (out + p);
+        auto& [sum, count] = sums[n.nodes[r]];
+        sum += c.state.lambda[at(c.system.first_row(n.row_pool)) + r];
+        ++count;
       }
     }
+    for (const auto& [node, s] : sums) pressure[at(node)] = s.first / s.second;
   }
 };
 
@@ -69,7 +72,8 @@ class VolumeEffect final : public EffectSource {
     for (const std::size_t r : regions.value()) {
       const RegionData& region = body.regions[r];
       const Index pool = region.volume_pool[static_cast<std::size_t>(strain())];
-      if (pool < 0) continue;
+      // Rows of another effect may have asked for the pool; without a bulk modulus these carry nothing.
+      if (pool < 0 || (std::isinf(region.material->inverse_bulk()) && !def_.hard)) continue;
       VolumeRegion v;
       v.name = def_.name + (body.regions.size() > 1 ? "/" + region.name : "");
       v.stencil_pool = pool;

@@ -35,7 +35,7 @@ void finish_row(RowPool& rows, double volume, const VolumeRegion& region) {
 }  // namespace
 
 std::shared_ptr<RowPool> element_volume_rows(const VolumeRegion& region) {
-  auto rows = std::make_shared<VolumeRows>(region.name);
+  auto rows = std::make_shared<VolumeRowPool>(region.name);
   rows->stencil_pool = region.stencil_pool;
   for (Index s = 0; s < region.pool->stencils(); ++s) {
     const double volume = region.pool->volume(s);
@@ -47,7 +47,7 @@ std::shared_ptr<RowPool> element_volume_rows(const VolumeRegion& region) {
 }
 
 std::shared_ptr<RowPool> total_volume_row(const VolumeRegion& region) {
-  auto rows = std::make_shared<VolumeRows>(region.name);
+  auto rows = std::make_shared<VolumeRowPool>(region.name);
   rows->stencil_pool = region.stencil_pool;
   double volume = 0;
   for (Index s = 0; s < region.pool->stencils(); ++s) {
@@ -61,7 +61,7 @@ std::shared_ptr<RowPool> total_volume_row(const VolumeRegion& region) {
 
 std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double tau,
                                            std::vector<Index>* corner_nodes) {
-  auto rows = std::make_shared<VolumeRows>(region.name);
+  auto rows = std::make_shared<VolumeRowPool>(region.name);
   rows->stencil_pool = region.stencil_pool;
   const SolidPool& pool = *region.pool;
   const SolidData& data = pool.data();

@@ -17,9 +17,9 @@ struct VolumeRegion {
 };
 
 // Base of the family: targets are zero, the volume at rest.
-class VolumeRows : public RowPool {
+class VolumeRowPool : public RowPool {
  public:
-  explicit VolumeRows(std::string name) : name_(std::move(name)) {}
+  explicit VolumeRowPool(std::string name) : name_(std::move(name)) {}
   std::string_view name() const override { return name_; }
 
  protected:

@@ -122,6 +122,9 @@ Result<void> Builder::add_body(const BodyDef& def) {
     if (finding.severity == Severity::error) {
       return Error{"body \"" + def.name + "\": mesh " + def.mesh.source + ": " + finding.message};
     }
+    if (finding.severity == Severity::warning) {
+      warn("body \"" + def.name + "\": mesh " + def.mesh.source + ": " + finding.message);
+    }
   }
   BodyData body;
   body.name = def.name;
@@ -345,14 +348,18 @@ std::vector<Vec3> Builder::directions_given(Index node) const {
   return directions;
 }
 
-std::vector<Index> Builder::nodes_given_by(const std::string& who) const {
-  std::vector<Index> nodes;
+std::vector<std::vector<HeldDirection>> Builder::held_directions(std::size_t effects) const {
+  std::vector<std::vector<HeldDirection>> held(effects);
   for (Index i = 0; i < static_cast<Index>(given_.size()); ++i) {
-    const auto& list = given_[at(i)];
-    if (std::any_of(list.begin(), list.end(), [&](const Given& g) { return g.who == who; }))
-      nodes.push_back(i);
+    std::vector<Vec3> frame;
+    for (const Given& g : given_[at(i)]) {
+      Vec3 d = g.direction;
+      for (const Vec3& f : frame) d -= dot(d, f) * f;
+      frame.push_back((1 / std::sqrt(dot(d, d))) * d);
+      held[at(g.owner)].push_back({i, frame.back()});
+    }
   }
-  return nodes;
+  return held;
 }
 
 Result<void> Builder::prescribe(Index node, const Vec3& direction, std::shared_ptr<const Motion> motion,
@@ -368,7 +375,7 @@ Result<void> Builder::prescribe(Index node, const Vec3& direction, std::shared_p
   }
   for (const Vec3& f : frame) rest_of -= dot(rest_of, f) * f;
   if (dot(rest_of, rest_of) > 1e-12) {
-    list.push_back({direction, std::move(motion), who});
+    list.push_back({direction, std::move(motion), who, owner_});
     return {};
   }
   for (const Given& g : list) {

@@ -106,6 +106,12 @@ class Motion {
   virtual bool never_moves() const { return false; }
 };
 
+// A direction in which an effect holds a node; the directions of one node are orthonormal.
+struct HeldDirection {
+  Index node = -1;
+  Vec3 direction{};
+};
+
 class Builder {
  public:
   // Bodies first.
@@ -149,7 +155,9 @@ class Builder {
   // Number of directions in which a node is given so far.
   int given_directions(Index node) const;
   std::vector<Vec3> directions_given(Index node) const;  // unit vectors
-  std::vector<Index> nodes_given_by(const std::string& who) const;
+  // What each effect holds; directions that depend on earlier ones belong to the earlier effect.
+  std::vector<std::vector<HeldDirection>> held_directions(std::size_t effects) const;
+  void set_owner(Index effect) { owner_ = effect; }
   void warn(std::string text) { warnings_.push_back(std::move(text)); }
 
   // Merges supports, checks the scene and hands the parts over.
@@ -167,10 +175,12 @@ class Builder {
     Vec3 direction;
     std::shared_ptr<const Motion> motion;
     std::string who;
+    Index owner;
   };
   friend class SupportPrescriber;
   std::vector<std::vector<Given>> given_;
   std::vector<std::string> warnings_;
+  Index owner_ = -1;  // effect being built
 };
 
 }  // namespace isochor

@@ -525,7 +525,7 @@ NewtonReport Newton::solve(const NewtonProblem& p, const NewtonOptions& options,
     if (iteration == 0 && !std::isfinite(assembly_.energy())) return fail(NewtonStatus::not_finite);
     position_gap(p, x);
     if (cancelled && cancelled()) return fail(NewtonStatus::cancelled);
-    if (iteration > options.max_iterations) return fail(NewtonStatus::iteration_limit);
+    if (iteration >= options.max_iterations) return fail(NewtonStatus::iteration_limit);
     // A state that is already in balance stays to the last bit.
     if (iteration == 0 && balanced(p, options, x, report)) return report;
     if (!factor(p, x, lambda, report)) {

@@ -90,7 +90,8 @@ class Newton {
   const StageSeconds& seconds() const { return seconds_; }
   std::int64_t factor_nonzeros() const { return factor_nonzeros_; }
   int analyses() const { return analyses_; }
-  // Internal plus load and inertia forces at the last evaluation: minus the reactions at given nodes [N].
+  // Internal minus load forces, plus inertia, at the last evaluation: zero at free coordinates in balance,
+  // the support force on the body at given ones [N].
   std::span<const Vec3> residual() const { return r_; }
 
  private:

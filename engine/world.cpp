@@ -80,12 +80,16 @@ Result<void> World::Impl::compile_once() {
     if (auto r = e->declare(builder); !r) return r;
   }
   if (auto r = builder.build_solids(); !r) return r;
-  for (const EffectPtr& e : sources) {
-    auto instance = e->build(builder);
+  for (std::size_t e = 0; e < sources.size(); ++e) {
+    builder.set_owner(static_cast<Index>(e));
+    auto instance = sources[e]->build(builder);
     if (!instance) return Error{instance.error()};
     instances.push_back(std::move(instance).value());
   }
-  collect_supports();
+  held_by = builder.held_directions(sources.size());
+  for (const std::string& warning : builder.warnings()) {
+    if (options.log) options.log(warning);
+  }
   auto parts = builder.finish(options.scheme->mass_scale(1) == 0);
   if (!parts) return Error{parts.error()};
   auto compiled_system = System::compile(std::move(parts).value());
@@ -97,14 +101,6 @@ Result<void> World::Impl::compile_once() {
   newton->cancelled = [this] { return cancel_requested.load(std::memory_order_relaxed); };
   allocate();
   return {};
-}
-
-// Which effect holds which node: reactions are summed by effect.
-void World::Impl::collect_supports() {
-  held_by.assign(sources.size(), {});
-  for (std::size_t e = 0; e < sources.size(); ++e) {
-    held_by[e] = builder.nodes_given_by(sources[e]->name());
-  }
 }
 
 void World::Impl::allocate() {
@@ -123,7 +119,11 @@ void World::Impl::allocate() {
   prescribed.resize(at(system->prescribed_rows()));
   position.resize(system->free_bases().size());
   reactions.assign(n, Vec3{});
+  // Gravity acts on the mass that inertia has: with a lumped mass, free fall stays rigid. Statics has no
+  // inertia and takes the consistent distribution, which is more accurate for Tet10.
+  if (options.scheme->mass_scale(1) > 0) weight = parts.mass;
   for (const BodyData& body : builder.bodies()) {
+    if (options.scheme->mass_scale(1) > 0) break;
     for (const RegionData& region : body.regions) {
       add_nodal_volume(*body.reference, parts.rest, body.global_cells, region.cells, region.density, weight);
     }
@@ -254,6 +254,7 @@ StepReport World::step(double h) {
   const auto start = std::chrono::steady_clock::now();
   const StageSeconds before = w.newton->seconds();
   w.cancel_requested = false;
+  const std::vector<double> amounts = w.save_amounts();
   w.begin_amounts(w.state.t, w.state.t + h);
   StepReport report;
   const double t_target = w.state.t + h;
@@ -268,6 +269,7 @@ StepReport World::step(double h) {
     report.rejected_substeps = 1;
     report.reason = failure_text(r, t_target);
   }
+  if (report.status != StepStatus::converged) w.load_amounts(amounts);
   w.finish_report(report, before, seconds_since(start));
   return report;
 }
@@ -315,7 +317,10 @@ StepReport World::advance(double h) {
     if (increment < w.options.smallest_fraction * h || hopeless) {
       report.status = StepStatus::rejected;
       report.reason = failure_text(r, w.state.t + dt);
-      if (!hopeless) {
+      if (r.status == NewtonStatus::singular) {
+        report.reason +=
+            ": rows without compliance may repeat each other or lack stabilization, or a part is not held";
+      } else if (!hopeless) {
         report.reason += "; increments shrank to " + std::to_string(increment / h) +
                          " of the step, the last equilibrium is at t = " + std::to_string(w.state.t) +
                          ": probably there is none beyond (a limit point, or a load that nothing can carry)";
@@ -350,6 +355,20 @@ Result<void> World::set_amount(EffectId effect, double amount) {
   }
   a->set(amount);
   return {};
+}
+
+std::vector<double> World::Impl::save_amounts() const {
+  std::vector<double> all;
+  for (const auto& instance : instances) {
+    if (const Amount* a = instance->amount()) a->save(all);
+  }
+  return all;
+}
+
+void World::Impl::load_amounts(std::span<const double> all) {
+  for (const auto& instance : instances) {
+    if (Amount* a = instance->amount()) a->load(all);
+  }
 }
 
 void World::Impl::begin_amounts(double t0, double t1) {

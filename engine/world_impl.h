@@ -16,7 +16,7 @@ struct World::Impl {
   Builder builder;
   std::vector<EffectPtr> sources;
   std::vector<std::unique_ptr<EffectInstance>> instances;
-  std::vector<std::vector<Index>> held_by;  // nodes given by each effect
+  std::vector<std::vector<HeldDirection>> held_by;  // by effect
   std::shared_ptr<const System> system;
   std::unique_ptr<Newton> newton;
   State state;
@@ -31,13 +31,16 @@ struct World::Impl {
   bool compiled() const { return newton != nullptr; }
   Result<void> compile();
   Result<void> compile_once();
-  void collect_supports();
   void allocate();
+  std::vector<double> save_amounts() const;
+  void load_amounts(std::span<const double> all);
   void begin_amounts(double t0, double t1);
   void evaluate_data(double t);
   NewtonReport attempt(double h, int max_iterations);
   StepReport invalid(std::string reason) const;
   void finish_report(StepReport& report, const StageSeconds& before, double total) const;
+  // phi - target - C lambda of all compliant rows at the state.
+  std::vector<double> row_residuals();
   // Evaluates forces and multipliers at the state.
   void evaluate_state(Want want);
 };

@@ -56,31 +56,38 @@ BodyMeasures World::measures(BodyId body) const {
   if (!w.compile()) return {};
   const BodyData& b = w.builder.body(body);
   BodyMeasures m = measure_body(b, w.system->parts(), w.state.x);
-  // Volume that the compliance grants: the sum of C lambda over the volume rows of the body. A body with
-  // one-field elements grants itself whatever it does.
-  double allowed = 0;
-  std::vector<double> strain(at(w.system->rows()), 0);
-  for (const ComplianceEntry& e : w.system->compliance()) {
-    strain[at(e.row)] += e.value * w.state.lambda[at(e.col)];
-    if (e.row != e.col) strain[at(e.col)] += e.value * w.state.lambda[at(e.row)];
-  }
-  bool rows_everywhere = true;
-  for (const RegionData& region : b.regions) {
-    if (region.volume_pool[0] < 0) rows_everywhere = false;
-  }
-  if (!rows_everywhere) return m;
+  // What the rows of the body leave over, summed: the nodal rows of a region add up to its volume change less
+  // what their compliance grants. A body with one-field elements grants itself whatever it does.
+  const std::vector<double> theta = w.row_residuals();
   const auto& pools = w.system->parts().row_pools;
   for (std::size_t p = 0; p < pools.size(); ++p) {
-    const bool of_body = pools[p]->law == RowLaw::compliant &&
-                         std::any_of(b.regions.begin(), b.regions.end(), [&](const RegionData& r) {
-                           return r.volume_pool[0] == pools[p]->stencil_pool;
-                         });
+    const bool of_body =
+        pools[p]->law == RowLaw::compliant &&
+        std::any_of(b.regions.begin(), b.regions.end(), [&](const RegionData& r) {
+          return r.volume_pool[0] == pools[p]->stencil_pool || r.volume_pool[1] == pools[p]->stencil_pool;
+        });
     if (!of_body) continue;
     const auto first = at(w.system->first_row(static_cast<Index>(p)));
-    for (std::size_t r = 0; r < at(pools[p]->rows()); ++r) allowed += strain[first + r];
+    double sum = 0, volume = 0;
+    for (std::size_t r = 0; r < at(pools[p]->rows()); ++r) {
+      sum += theta[first + r];
+      volume += pools[p]->measure[r];
+    }
+    m.volume_error = std::max(m.volume_error, std::abs(sum) / volume);
   }
-  m.volume_error = std::abs(m.volume - m.rest_volume - allowed) / m.rest_volume;
   return m;
+}
+
+std::vector<double> World::Impl::row_residuals() {
+  evaluate_state(Want::value);
+  std::vector<double> theta(at(system->rows()));
+  newton->assembly().row_values(theta);
+  for (std::size_t r = 0; r < theta.size(); ++r) theta[r] -= target[r];
+  for (const ComplianceEntry& e : system->compliance()) {
+    theta[at(e.row)] -= e.value * state.lambda[at(e.col)];
+    if (e.row != e.col) theta[at(e.col)] -= e.value * state.lambda[at(e.row)];
+  }
+  return theta;
 }
 
 BodyFields World::fields(BodyId body) const {
@@ -109,15 +116,10 @@ std::array<Vec3, 2> World::reaction(EffectId effect) const {
   Impl& w = *impl_;
   const auto i = static_cast<std::size_t>(effect);
   if (!w.compile() || i >= w.held_by.size()) return sum;
-  for (const Index node : w.held_by[i]) {
-    const Index b = w.system->basis_of()[at(node)];
-    if (b < 0) continue;
-    const FreeBasis& basis = w.system->free_bases()[at(b)];
-    Vec3 q = transposed_times(basis.directions, w.reactions[at(node)]);
-    for (int c = 0; c < basis.count; ++c) q[c] = 0;
-    const Vec3 f = basis.directions * q;
+  for (const HeldDirection& h : w.held_by[i]) {
+    const Vec3 f = dot(h.direction, w.reactions[at(h.node)]) * h.direction;
     sum[0] += f;
-    sum[1] += cross(w.state.x[at(node)], f);
+    sum[1] += cross(w.state.x[at(h.node)], f);
   }
   return sum;
 }
@@ -146,17 +148,11 @@ double World::kinetic_energy() const {
 double World::constitutive_residual() const {
   Impl& w = *impl_;
   if (!w.compile()) return 0;
-  w.evaluate_state(Want::value);
-  std::vector<double> theta(at(w.system->rows()));
-  w.newton->assembly().row_values(theta);
-  for (std::size_t r = 0; r < theta.size(); ++r) theta[r] -= w.target[r];
-  for (const ComplianceEntry& e : w.system->compliance()) {
-    theta[at(e.row)] -= e.value * w.state.lambda[at(e.col)];
-    if (e.row != e.col) theta[at(e.col)] -= e.value * w.state.lambda[at(e.row)];
-  }
+  const std::vector<double> theta = w.row_residuals();
   double worst = 0;
-  for (std::size_t r = 0; r < theta.size(); ++r)
+  for (std::size_t r = 0; r < theta.size(); ++r) {
     worst = std::max(worst, std::abs(theta[r]) / w.system->row_measure()[r]);
+  }
   return worst;
 }
 
@@ -201,10 +197,7 @@ std::vector<std::byte> World::save() const {
   std::vector<std::byte> out;
   Impl& w = *impl_;
   if (!w.compile()) return out;
-  std::vector<double> amounts;
-  for (const auto& instance : w.instances) {
-    if (const Amount* a = instance->amount()) a->save(amounts);
-  }
+  const std::vector<double> amounts = w.save_amounts();
   const std::uint64_t sizes[5] = {w.state.x.size(), w.state.lambda.size(), w.state.extra.size(),
                                   amounts.size(), w.reactions.size()};
   put(out, &kSaveMagic, 1);
@@ -250,13 +243,10 @@ Result<void> World::load(std::span<const std::byte> bytes) {
       !take(bytes, reactions.data(), sizes[4]) || !bytes.empty()) {
     return Error{"load: the saved state is truncated or too long"};
   }
-  std::span<const double> rest(amounts);
   std::size_t with_amount = 0;
   for (const auto& instance : w.instances) with_amount += instance->amount() ? 1 : 0;
   if (amounts.size() != 7 * with_amount) return Error{"load: the saved state belongs to other effects"};
-  for (const auto& instance : w.instances) {
-    if (Amount* a = instance->amount()) a->load(rest);
-  }
+  w.load_amounts(amounts);
   w.state = std::move(next);
   w.reactions = std::move(reactions);
   return {};

@@ -27,11 +27,13 @@ struct VolumeDef {
   BodyId body{};
   VolumeSpace space = VolumeSpace::node;
   VolumeStrainKind strain = VolumeStrainKind::linear;
-  // Regions it covers; empty: all. `node` and `element` rows are split at interfaces between regions.
+  // Regions it covers; empty: all. Rows are split at interfaces between regions, where the pressure jumps;
+  // `body` gives one row a region.
   std::vector<std::string> regions;
   // Dohrmann-Bochev stabilization of nodal rows on linear tets; ignored where inf-sup holds. 0: off.
   double stabilization = 1;
-  // Rows with C = 0 whatever the material says.
+  // No bulk compliance whatever the material says (nodal rows keep their stabilization, which leaves totals
+  // alone).
   bool hard = false;
   // True: these rows carry the bulk modulus and the elements keep only the distortional energy. False: the
   // rows come on top of other rows or of the complete one-field energy.
@@ -97,6 +99,7 @@ struct CavityDef {
   Curve amount = Curve::ramp(0);
   // Openings are closed by virtual caps: flat fans over each boundary loop of the surface. A loop that is not
   // wholly on a support is refused unless this is set, since nothing real would hold the pressure there.
+  // Supports must be added before the cavity.
   bool cap_free_openings = false;
 };
 EffectPtr cavity(CavityDef def);

@@ -52,7 +52,7 @@ struct Error {
   std::string message;
 };
 
-// A value or the reason why there is none. Never throws; value() of a failed result terminates.
+// A value or the reason why there is none. Never throws. Test it before value(): a failed result has none.
 template <class T>
 class [[nodiscard]] Result {
  public:

@@ -171,7 +171,7 @@ class World {
   std::span<const Vec3> positions(BodyId body) const;
   std::span<const Vec3> velocities(BodyId body) const;
   std::span<const Vec3> rest_positions(BodyId body) const;
-  // The mesh as the engine uses it (Tet10 when the element asked for it, inverted cells turned).
+  // The mesh as the engine uses it (raised to Tet10 when the element asked for it).
   const Mesh& mesh(BodyId body) const;
   const std::string& body_name(BodyId body) const;
   Index body_count() const;
