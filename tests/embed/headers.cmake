@@ -1,0 +1,13 @@
+# Hosts need no third-party header: their alignment and versions are none of the host's business.
+file(GLOB headers ${INCLUDE}/isochor/*.h)
+if(NOT headers)
+  message(FATAL_ERROR "no headers in ${INCLUDE}")
+endif()
+foreach(header ${headers})
+  file(STRINGS ${header} lines REGEX "^ *# *include")
+  foreach(line ${lines})
+    if(NOT line MATCHES "<[a-z_]+>" AND NOT line MATCHES "\"isochor/[a-z_]+\\.h\"")
+      message(SEND_ERROR "${header}: ${line}: public headers include the standard library and each other only")
+    endif()
+  endforeach()
+endforeach()
