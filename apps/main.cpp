@@ -18,11 +18,15 @@ void add_run(CLI::App& top, app::RunArguments& a) {
   CLI::App* c = top.add_subcommand("run", "Run a scene of the library or a scene file");
   c->add_option("scene", a.scene, "Name of a scene (see `isochor list`) or a file that ends in .json")
       ->capture_default_str();
-  c->add_option("--set", a.overrides, "Change a value of the scene: path=value")->type_name("PATH=VALUE")
-      ->take_all()->expected(1)->allow_extra_args(false);
+  c->add_option("--set", a.overrides, "Change a value of the scene: path=value")
+      ->type_name("PATH=VALUE")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
   c->add_option("--out", a.folder, "Folder of the outputs; default out/NAME")->type_name("DIR");
   c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
-  c->add_option("--budget", a.budget, "Stop after this much wall time")->type_name("SECONDS")
+  c->add_option("--budget", a.budget, "Stop after this much wall time")
+      ->type_name("SECONDS")
       ->check(CLI::PositiveNumber);
   c->add_flag("--quiet", a.quiet, "Print errors only");
   c->add_flag("--json", a.json, "Print the summary as JSON instead of tables");
@@ -41,13 +45,18 @@ int dispatch(int argc, char** argv) {
   CLI::App* list = top.add_subcommand("list", "List the scenes of the library");
   list->add_flag("--json", json, "As JSON");
   add_run(top, run);
-  CLI::App* check = top.add_subcommand("check", "Check mesh files: counts and findings; exit 2 if one is not usable");
+  CLI::App* check =
+      top.add_subcommand("check", "Check mesh files: counts and findings; exit 2 if one is not usable");
   check->add_option("mesh", meshes, "Mesh files (.msh, .vtk, .vtu, .node/.ele, .mesh)")->required();
-  check->add_option("--scale", scale, "Multiplies coordinates: 1e-3 for millimeters")->check(CLI::PositiveNumber);
+  check->add_option("--scale", scale, "Multiplies coordinates: 1e-3 for millimeters")
+      ->check(CLI::PositiveNumber);
   check->add_flag("--json", json, "As JSON");
   CLI::App* show = top.add_subcommand("show", "Print a scene as a scene file, a start for one of your own");
   show->add_option("scene", scene, "Name of a scene or a scene file")->required();
-  show->add_option("--set", overrides, "Change a value: path=value")->take_all()->expected(1)->allow_extra_args(false);
+  show->add_option("--set", overrides, "Change a value: path=value")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
   CLI::App* version = top.add_subcommand("version", "Print version, build and licenses");
   version->add_flag("--json", json, "As JSON");
   try {

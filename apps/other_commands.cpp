@@ -35,15 +35,22 @@ Json list_of(const Vec3& v) {
 }
 
 Json report_json(const std::string& path, const MeshReport& r) {
-  Json j{{"mesh", path},          {"usable", r.usable()},
-         {"nodes", r.nodes},      {"cells", r.cells},
-         {"parts", r.parts},      {"volume_m3", r.volume},
-         {"box_m", Json::array({list_of(r.box[0]), list_of(r.box[1])})}, {"worst_quality", r.worst_quality},
+  Json j{{"mesh", path},
+         {"usable", r.usable()},
+         {"nodes", r.nodes},
+         {"cells", r.cells},
+         {"parts", r.parts},
+         {"volume_m3", r.volume},
+         {"box_m", Json::array({list_of(r.box[0]), list_of(r.box[1])})},
+         {"worst_quality", r.worst_quality},
          {"smallest_dihedral_deg", r.smallest_dihedral_deg}};
   j["findings"] = Json::array();
   for (const auto& f : r.findings) {
-    j["findings"].push_back({{"severity", to_string(f.severity)}, {"code", f.code}, {"message", f.message},
-                             {"count", f.count}, {"examples", f.examples}});
+    j["findings"].push_back({{"severity", to_string(f.severity)},
+                             {"code", f.code},
+                             {"message", f.message},
+                             {"count", f.count},
+                             {"examples", f.examples}});
   }
   return j;
 }
@@ -69,8 +76,8 @@ void print_report(const std::string& path, const Mesh& mesh, const MeshReport& r
   std::printf("  box       (%s, %s, %s) to (%s, %s, %s) m, volume %s m^3\n", number(r.box[0].x).c_str(),
               number(r.box[0].y).c_str(), number(r.box[0].z).c_str(), number(r.box[1].x).c_str(),
               number(r.box[1].y).c_str(), number(r.box[1].z).c_str(), number(r.volume).c_str());
-  std::printf("  quality   %s at worst, smallest dihedral angle %s degrees\n", number(r.worst_quality, 3).c_str(),
-              number(r.smallest_dihedral_deg, 3).c_str());
+  std::printf("  quality   %s at worst, smallest dihedral angle %s degrees\n",
+              number(r.worst_quality, 3).c_str(), number(r.smallest_dihedral_deg, 3).c_str());
   print_sets(mesh);
   for (const auto& f : r.findings) {
     std::printf("  %-7s   %s: %s\n", to_string(f.severity), f.code.c_str(), f.message.c_str());
@@ -86,14 +93,19 @@ int list(bool json) {
   table.numbers_from(3, 4);
   for (const LibraryScene& s : scene_library()) {
     const SceneDef scene = s.make({});
-    all.push_back({{"name", s.name}, {"title", s.title}, {"mesh", mesh_name(scene)},
+    all.push_back({{"name", s.name},
+                   {"title", s.title},
+                   {"mesh", mesh_name(scene)},
                    {"steps", plan_steps(scene.analysis).steps}});
     for (const auto& m : scene.metrics) all.back()["metrics"].push_back(m.name);
     table.add({std::string(s.name), std::string(s.title), mesh_name(scene),
                std::to_string(plan_steps(scene.analysis).steps), std::to_string(scene.metrics.size())});
   }
-  if (json) print(all);
-  else std::printf("%s\nRun one with `isochor run NAME`; `isochor show NAME` prints it as a scene file.\n", table.text().c_str());
+  if (json)
+    print(all);
+  else
+    std::printf("%s\nRun one with `isochor run NAME`; `isochor show NAME` prints it as a scene file.\n",
+                table.text().c_str());
   return success;
 }
 
@@ -104,14 +116,18 @@ int check(const std::vector<std::string>& meshes, double scale, bool json) {
     const auto mesh = read_mesh(path, {scale});
     if (!mesh) {
       usable = false;
-      if (json) all.push_back({{"mesh", path}, {"usable", false}, {"error", mesh.error()}});
-      else std::fprintf(stderr, "isochor: %s\n", mesh.error().c_str());
+      if (json)
+        all.push_back({{"mesh", path}, {"usable", false}, {"error", mesh.error()}});
+      else
+        std::fprintf(stderr, "isochor: %s\n", mesh.error().c_str());
       continue;
     }
     const MeshReport report = check_mesh(mesh.value());
     usable = usable && report.usable();
-    if (json) all.push_back(report_json(path, report));
-    else print_report(path, mesh.value(), report);
+    if (json)
+      all.push_back(report_json(path, report));
+    else
+      print_report(path, mesh.value(), report);
   }
   if (json) print(all);
   return usable ? success : bad_input;
@@ -123,15 +139,20 @@ int version(bool json) {
   if (ISOCHOR_CHOLMOD) solvers.push_back("cholmod");
   solvers.push_back("eigen");
   if (json) {
-    print({{"version", isochor::version()}, {"build", build_description()}, {"solvers", solvers},
-           {"metis", ISOCHOR_METIS != 0}, {"machine", machine_description()}});
+    print({{"version", isochor::version()},
+           {"build", build_description()},
+           {"solvers", solvers},
+           {"metis", ISOCHOR_METIS != 0},
+           {"machine", machine_description()}});
     return success;
   }
   std::string names;
   for (const auto& s : solvers) names += (names.empty() ? "" : ", ") + s.get<std::string>();
-  std::printf("isochor %s\n  build     %s\n  solvers   %s; METIS ordering: %s\n  machine   %s\n  license   Apache-2.0\n",
-              isochor::version().c_str(), build_description().c_str(), names.c_str(), ISOCHOR_METIS ? "yes" : "no",
-              machine_description().c_str());
+  std::printf(
+      "isochor %s\n  build     %s\n  solvers   %s; METIS ordering: %s\n  machine   %s\n  license   "
+      "Apache-2.0\n",
+      isochor::version().c_str(), build_description().c_str(), names.c_str(), ISOCHOR_METIS ? "yes" : "no",
+      machine_description().c_str());
   return success;
 }
 

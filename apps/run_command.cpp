@@ -35,16 +35,18 @@ Result<SceneDef> find(const std::string& name, const Overrides& overrides) {
 
 std::string duration(double s) {
   char text[32];
-  if (s < 60) std::snprintf(text, sizeof text, "%.1fs", s);
-  else std::snprintf(text, sizeof text, "%dm%02ds", static_cast<int>(s) / 60, static_cast<int>(s) % 60);
+  if (s < 60)
+    std::snprintf(text, sizeof text, "%.1fs", s);
+  else
+    std::snprintf(text, sizeof text, "%dm%02ds", static_cast<int>(s) / 60, static_cast<int>(s) % 60);
   return text;
 }
 
 class Progress {
  public:
   void header() const {
-    std::printf("%6s %10s %5s %9s %9s %9s %8s %8s %7s\n", "step", "time", "iter", "residual", "rows", "volume err",
-                "min J", "elapsed", "ETA");
+    std::printf("%6s %10s %5s %9s %9s %9s %8s %8s %7s\n", "step", "time", "iter", "residual", "rows",
+                "volume err", "min J", "elapsed", "ETA");
   }
   void line(const StepRecord& r, int steps) {
     if (r.rejected > 0) note_rejected(r);
@@ -76,8 +78,8 @@ void print_metrics(const RunResult& r) {
     const bool absolute = m.def.reference && *m.def.reference == 0;
     std::string error = m.error ? (absolute ? number(*m.error, 2) : number(100 * *m.error, 3) + " %") : "";
     if (!m.reached) error = "not reached";
-    table.add({m.def.name, number(m.value, 6), m.def.unit, m.def.reference ? number(*m.def.reference, 6) : "", error,
-               m.within ? (*m.within ? "ok" : "OUT") : "", m.def.source});
+    table.add({m.def.name, number(m.value, 6), m.def.unit, m.def.reference ? number(*m.def.reference, 6) : "",
+               error, m.within ? (*m.within ? "ok" : "OUT") : "", m.def.source});
   }
   std::printf("\n%s", table.text("  ").c_str());
 }
@@ -91,7 +93,8 @@ void print_state(const RunResult& r) {
   }
   for (std::size_t c = 0; c < r.cavities.size(); ++c) {
     table.add({"cavity " + r.cavities[c],
-               number(end.cavities[c].pressure) + " Pa, " + number(1e6 * end.cavities[c].volume) + " cm^3", ""});
+               number(end.cavities[c].pressure) + " Pa, " + number(1e6 * end.cavities[c].volume) + " cm^3",
+               ""});
   }
   for (std::size_t s = 0; s < r.supports.size(); ++s) {
     table.add({"reaction " + r.supports[s], vector_text(end.reactions[s].force), "N"});
@@ -102,20 +105,27 @@ void print_state(const RunResult& r) {
 void print_summary(const RunResult& r, const std::string& folder) {
   print_metrics(r);
   print_state(r);
-  std::printf("\n%s: %s, %d Newton iterations, %d factorizations, %.2f s; volume error %.1e\n", r.scene.c_str(),
-              to_string(r.status), r.newton_iterations, r.factorizations, r.wall_s,
+  std::printf("\n%s: %s, %d Newton iterations, %d factorizations, %.2f s; volume error %.1e\n",
+              r.scene.c_str(), to_string(r.status), r.newton_iterations, r.factorizations, r.wall_s,
               r.records.empty() ? 0.0 : r.records.back().volume_error);
-  std::printf("outputs in %s/: index.html, %s.pvd, steps.csv, summary.json\n", folder.c_str(), r.scene.c_str());
+  std::printf("outputs in %s/: index.html, %s.pvd, steps.csv, summary.json\n", folder.c_str(),
+              r.scene.c_str());
 }
 
 int exit_code(RunStatus status) {
   switch (status) {
-    case RunStatus::converged: return success;
-    case RunStatus::not_converged: return not_converged;
-    case RunStatus::budget: return out_of_budget;
-    case RunStatus::interrupted: return interrupted;
-    case RunStatus::bad_input: return bad_input;
-    case RunStatus::failed: break;
+    case RunStatus::converged:
+      return success;
+    case RunStatus::not_converged:
+      return not_converged;
+    case RunStatus::budget:
+      return out_of_budget;
+    case RunStatus::interrupted:
+      return interrupted;
+    case RunStatus::bad_input:
+      return bad_input;
+    case RunStatus::failed:
+      break;
   }
   return internal;
 }
@@ -154,7 +164,8 @@ int run(const RunArguments& a) {
   }
   if (a.json) std::fputs(summary_json(result).c_str(), stdout);
   if (tables) print_summary(result, options.folder);
-  if (!result.reason.empty()) std::fprintf(stderr, "isochor: %s: %s\n", to_string(result.status), result.reason.c_str());
+  if (!result.reason.empty())
+    std::fprintf(stderr, "isochor: %s: %s\n", to_string(result.status), result.reason.c_str());
   return exit_code(result.status);
 }
 

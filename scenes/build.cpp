@@ -20,8 +20,10 @@ Result<Mesh> make_mesh(const SceneBody& body, const std::string& folder) {
 
 Result<MaterialPtr> make_material(const MaterialDef& def) {
   switch (def.law) {
-    case MaterialLaw::neo_hookean: return neo_hookean(def.constants);
-    case MaterialLaw::stable_neo_hookean: return stable_neo_hookean(def.constants);
+    case MaterialLaw::neo_hookean:
+      return neo_hookean(def.constants);
+    case MaterialLaw::stable_neo_hookean:
+      return stable_neo_hookean(def.constants);
   }
   return Error{"unknown material law"};
 }

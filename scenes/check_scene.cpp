@@ -25,7 +25,8 @@ std::string place(const char* list, std::size_t i) {
 // Names become file names, CSV columns and keys of the summary.
 Result<void> check_name(const std::string& where, const std::string& name) {
   if (name.empty()) return Error{where + ".name is empty; give it a name"};
-  if (name.size() > 100) return Error{where + ".name has " + std::to_string(name.size()) + " characters; 100 are allowed"};
+  if (name.size() > 100)
+    return Error{where + ".name has " + std::to_string(name.size()) + " characters; 100 are allowed"};
   for (const char c : name) {
     const auto u = static_cast<unsigned char>(c);
     if (u < 0x20 || c == '/' || c == '\\' || c == '"' || c == ',') {
@@ -36,7 +37,8 @@ Result<void> check_name(const std::string& where, const std::string& name) {
 }
 
 template <class T, class Name>
-Result<void> check_names(const char* list, const std::vector<T>& items, Name name_of, std::set<std::string>& seen) {
+Result<void> check_names(const char* list, const std::vector<T>& items, Name name_of,
+                         std::set<std::string>& seen) {
   for (std::size_t i = 0; i < items.size(); ++i) {
     const std::string& name = name_of(items[i]);
     if (auto r = check_name(place(list, i), name); !r) return r;
@@ -50,7 +52,8 @@ Result<void> check_names(const char* list, const std::vector<T>& items, Name nam
 template <class T>
 Result<void> check_names(const char* list, const std::vector<T>& items) {
   std::set<std::string> seen;
-  return check_names(list, items, [](const T& t) -> const std::string& { return t.name; }, seen);
+  return check_names(
+      list, items, [](const T& t) -> const std::string& { return t.name; }, seen);
 }
 
 Result<void> check_all_names(const SceneDef& s) {
@@ -75,7 +78,8 @@ Result<void> check_curve(const std::string& where, const Curve& curve) {
   if (curve.points.empty()) return Error{where + " is empty; give a number or points [[time, value], ...]"};
   double last = -std::numeric_limits<double>::infinity();
   for (const auto& p : curve.points) {
-    if (!std::isfinite(p[0]) || !std::isfinite(p[1])) return Error{where + " has a value that is no finite number"};
+    if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
+      return Error{where + " has a value that is no finite number"};
     if (p[0] < last) {
       return Error{where + " goes back in time from " + number(last) + " to " + number(p[0]) +
                    "; list its points by ascending time"};
@@ -110,8 +114,8 @@ Result<void> check_analysis(const AnalysisDef& a) {
                  number(a.duration)};
   }
   if (a.step && a.duration / *a.step > kMostSteps) {
-    return Error{"analysis.step = " + number(*a.step) + " s asks for more than " + std::to_string(kMostSteps) +
-                 " steps; take a longer one"};
+    return Error{"analysis.step = " + number(*a.step) + " s asks for more than " +
+                 std::to_string(kMostSteps) + " steps; take a longer one"};
   }
   if (!a.step && (a.steps < 1 || a.steps > kMostSteps)) {
     return Error{"analysis.steps = " + std::to_string(a.steps) + "; it must lie between 1 and " +
@@ -141,14 +145,19 @@ Result<void> require(const std::string& where, const char* what, const std::vect
 
 Result<void> check_metric(const SceneDef& s, const MetricDef& m, const std::string& where) {
   switch (m.quantity) {
-    case Quantity::displacement: return require(where, "probe", s.probes, m.of);
+    case Quantity::displacement:
+      return require(where, "probe", s.probes, m.of);
     case Quantity::cavity_pressure:
-    case Quantity::cavity_volume: return require(where, "cavity", s.cavities, m.of);
+    case Quantity::cavity_volume:
+      return require(where, "cavity", s.cavities, m.of);
     case Quantity::reaction_force:
-    case Quantity::reaction_moment: return require(where, "dirichlet support", s.dirichlet, m.of);
-    default: break;
+    case Quantity::reaction_moment:
+      return require(where, "dirichlet support", s.dirichlet, m.of);
+    default:
+      break;
   }
-  if (!m.of.empty()) return Error{where + ".of = \"" + m.of + "\": this quantity is of the whole scene; leave it out"};
+  if (!m.of.empty())
+    return Error{where + ".of = \"" + m.of + "\": this quantity is of the whole scene; leave it out"};
   return {};
 }
 
@@ -161,8 +170,9 @@ Result<void> check_metrics(const SceneDef& s) {
     if (!m.time) continue;
     const double steps = *m.time / plan.h;
     if (steps < 0.5 || steps > plan.steps + 0.5 || std::abs(steps - std::round(steps)) > 1e-6) {
-      return Error{where + ".time = " + number(*m.time) + " is not the end of a step; steps end at multiples of " +
-                   number(plan.h) + " up to " + number(s.analysis.duration)};
+      return Error{where + ".time = " + number(*m.time) +
+                   " is not the end of a step; steps end at multiples of " + number(plan.h) + " up to " +
+                   number(s.analysis.duration)};
     }
   }
   return {};
@@ -178,7 +188,8 @@ Result<void> check_bodies(const SceneDef& s) {
     if (!file) continue;
     if (file->path.empty()) return Error{place("bodies", b) + ".mesh.file is empty; name a mesh file"};
     if (!(file->scale > 0) || !std::isfinite(file->scale)) {
-      return Error{place("bodies", b) + ".mesh.scale = " + number(file->scale) + "; it must be a positive number"};
+      return Error{place("bodies", b) + ".mesh.scale = " + number(file->scale) +
+                   "; it must be a positive number"};
     }
   }
   for (std::size_t i = 0; i < s.probes.size(); ++i) {
@@ -207,7 +218,8 @@ Result<void> check_scene(const SceneDef& s) {
   if (auto r = check_analysis(s.analysis); !r) return r;
   if (auto r = check_all_curves(s); !r) return r;
   if (s.outputs.every < 0) {
-    return Error{"outputs.every = " + std::to_string(s.outputs.every) + "; give 0 (no frames) or a number of steps"};
+    return Error{"outputs.every = " + std::to_string(s.outputs.every) +
+                 "; give 0 (no frames) or a number of steps"};
   }
   return check_metrics(s);
 }

@@ -21,20 +21,30 @@ double component(const Vec3& v, Component c) {
 double quantity(const SceneDef& scene, const MetricDef& m, const std::vector<StepRecord>& records,
                 const StepRecord& r) {
   switch (m.quantity) {
-    case Quantity::displacement: return component(r.probes[place_of(scene.probes, m.of)], m.component);
-    case Quantity::cavity_pressure: return r.cavities[place_of(scene.cavities, m.of)].pressure;
-    case Quantity::cavity_volume: return r.cavities[place_of(scene.cavities, m.of)].volume;
+    case Quantity::displacement:
+      return component(r.probes[place_of(scene.probes, m.of)], m.component);
+    case Quantity::cavity_pressure:
+      return r.cavities[place_of(scene.cavities, m.of)].pressure;
+    case Quantity::cavity_volume:
+      return r.cavities[place_of(scene.cavities, m.of)].volume;
     case Quantity::reaction_force:
       return component(r.reactions[place_of(scene.dirichlet, m.of)].force, m.component);
     case Quantity::reaction_moment:
       return component(r.reactions[place_of(scene.dirichlet, m.of)].moment, m.component);
-    case Quantity::volume_error: return r.volume_error;
-    case Quantity::constitutive_residual: return r.constitutive_residual;
-    case Quantity::min_J: return r.min_J;
-    case Quantity::max_J: return r.max_J;
-    case Quantity::elastic_energy: return r.elastic_energy;
-    case Quantity::kinetic_energy: return r.kinetic_energy;
-    case Quantity::newton_iterations: break;
+    case Quantity::volume_error:
+      return r.volume_error;
+    case Quantity::constitutive_residual:
+      return r.constitutive_residual;
+    case Quantity::min_J:
+      return r.min_J;
+    case Quantity::max_J:
+      return r.max_J;
+    case Quantity::elastic_energy:
+      return r.elastic_energy;
+    case Quantity::kinetic_energy:
+      return r.kinetic_energy;
+    case Quantity::newton_iterations:
+      break;
   }
   int sum = 0;
   for (const StepRecord& s : records) sum += s.step <= r.step ? s.iterations : 0;
@@ -55,7 +65,8 @@ std::vector<MetricValue> evaluate_metrics(const SceneDef& scene, const std::vect
     });
     v.reached = it != records.end();
     // A number of the end is shown as far as the run got, but not held against its reference.
-    if (v.reached || !m.time) v.value = m.scale * quantity(scene, m, records, v.reached ? *it : records.back());
+    if (v.reached || !m.time)
+      v.value = m.scale * quantity(scene, m, records, v.reached ? *it : records.back());
     if (v.reached && m.reference) {
       const double difference = v.value - *m.reference;
       v.error = *m.reference == 0 ? difference : difference / std::abs(*m.reference);

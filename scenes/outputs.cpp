@@ -30,8 +30,9 @@ std::vector<double> region_of_cells(const Mesh& mesh) {
 }
 
 std::string table_header(const RunResult& r) {
-  std::string line = "step,time,iterations,substeps,rejected,force_residual,row_residual,constitutive_residual,"
-                     "volume_error,min_J,max_J,elastic_energy_J,kinetic_energy_J,seconds";
+  std::string line =
+      "step,time,iterations,substeps,rejected,force_residual,row_residual,constitutive_residual,"
+      "volume_error,min_J,max_J,elastic_energy_J,kinetic_energy_J,seconds";
   for (const auto& p : r.probes) line += "," + p + ".x_m," + p + ".y_m," + p + ".z_m";
   for (const auto& c : r.cavities) line += "," + c + ".pressure_Pa," + c + ".volume_m3";
   for (const auto& s : r.supports) {
@@ -44,9 +45,10 @@ std::string table_header(const RunResult& r) {
 
 std::string table_row(const StepRecord& r) {
   std::string line = std::to_string(r.step);
-  for (const double v : {r.time, static_cast<double>(r.iterations), static_cast<double>(r.substeps),
-                         static_cast<double>(r.rejected), r.force_residual, r.row_residual, r.constitutive_residual,
-                         r.volume_error, r.min_J, r.max_J, r.elastic_energy, r.kinetic_energy, r.seconds}) {
+  for (const double v :
+       {r.time, static_cast<double>(r.iterations), static_cast<double>(r.substeps),
+        static_cast<double>(r.rejected), r.force_residual, r.row_residual, r.constitutive_residual,
+        r.volume_error, r.min_J, r.max_J, r.elastic_energy, r.kinetic_energy, r.seconds}) {
     line += "," + number(v);
   }
   const auto add = [&](const Vec3& v) { line += "," + number(v.x) + "," + number(v.y) + "," + number(v.z); };
@@ -92,13 +94,16 @@ RunOutputs::~RunOutputs() = default;
 Result<RunOutputs> RunOutputs::open(const std::string& folder, const SceneDef& scene) {
   std::error_code code;
   fs::create_directories(fs::path(folder) / "frames", code);
-  if (code) return Error{"output folder " + folder + " cannot be made: " + code.message() + "; name another with --out"};
+  if (code)
+    return Error{"output folder " + folder + " cannot be made: " + code.message() +
+                 "; name another with --out"};
   // Tried here: later would be after the solve.
   const std::string probe = (fs::path(folder) / "summary.json").string();
   const std::string frame_probe = (fs::path(folder) / "frames" / ".try").string();
   for (const auto& path : {probe, frame_probe}) {
     if (auto r = write_text(path, "{}\n"); !r) {
-      return Error{"output folder " + folder + " cannot be written: " + r.error() + "; name another with --out"};
+      return Error{"output folder " + folder + " cannot be written: " + r.error() +
+                   "; name another with --out"};
     }
   }
   fs::remove(frame_probe, code);
@@ -123,7 +128,8 @@ Result<void> RunOutputs::write_frame(const RunView& view, std::size_t b, const B
   grid.points = rest;
   grid.cells = mesh.cells;
   grid.point_fields = {{"displacement", 3, flat(displacement)}, {"pressure", 1, fields.node_pressure}};
-  if (view.scene.analysis.type == AnalysisType::dynamics) grid.point_fields.push_back({"velocity", 3, flat(v)});
+  if (view.scene.analysis.type == AnalysisType::dynamics)
+    grid.point_fields.push_back({"velocity", 3, flat(v)});
   grid.cell_fields = {{"J", 1, fields.cell_J},
                       {"von_mises", 1, fields.cell_von_mises},
                       {"pressure", 1, fields.cell_pressure},

@@ -17,7 +17,8 @@ std::array<double, 4> barycentric(const Mesh& mesh, const Index* cell, const Vec
   const Vec3 a = mesh.nodes[index(cell[1])] - o, b = mesh.nodes[index(cell[2])] - o;
   const Vec3 c = mesh.nodes[index(cell[3])] - o, p = point - o;
   const double volume = dot(a, cross(b, c));
-  const double u = dot(p, cross(b, c)) / volume, v = dot(a, cross(p, c)) / volume, w = dot(a, cross(b, p)) / volume;
+  const double u = dot(p, cross(b, c)) / volume, v = dot(a, cross(p, c)) / volume,
+               w = dot(a, cross(b, p)) / volume;
   return {1 - u - v - w, u, v, w};
 }
 
@@ -40,7 +41,8 @@ MaterialPoint in_cell(const Mesh& mesh, const Index* cell, const std::array<doub
 
 Vec3 MaterialPoint::at(std::span<const Vec3> positions) const {
   Vec3 sum{};
-  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) sum += weights[k] * positions[index(nodes[k])];
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+    sum += weights[k] * positions[index(nodes[k])];
   return sum;
 }
 

@@ -31,7 +31,8 @@ void add(StageTimes& sum, const StageTimes& t) {
 // One run from a built world to its last record.
 class Run {
  public:
-  Run(const SceneDef& scene, const RunOptions& options, BuiltScene& built, RunResult& result, Clock::time_point start)
+  Run(const SceneDef& scene, const RunOptions& options, BuiltScene& built, RunResult& result,
+      Clock::time_point start)
       : scene_(scene), options_(options), built_(built), result_(result), start_(start) {}
 
   void describe();
@@ -76,9 +77,9 @@ void Run::locate_probes() {
     probes_.push_back(locate(built_.world.mesh(id), p.point));
     if (probes_.back().distance == 0) continue;
     const Vec3 X = built_.world.rest_positions(id)[static_cast<std::size_t>(probes_.back().nodes[0])];
-    warn("probe \"" + p.name + "\" lies in no cell; it follows the nearest node, at (" + std::to_string(X.x) + ", " +
-         std::to_string(X.y) + ", " + std::to_string(X.z) + "), " + std::to_string(probes_.back().distance) +
-         " m away");
+    warn("probe \"" + p.name + "\" lies in no cell; it follows the nearest node, at (" + std::to_string(X.x) +
+         ", " + std::to_string(X.y) + ", " + std::to_string(X.z) + "), " +
+         std::to_string(probes_.back().distance) + " m away");
   }
 }
 
@@ -130,7 +131,8 @@ void Run::record(int step, const StepReport& report) {
 
 bool Run::stopped(const StepReport& report) {
   switch (report.status) {
-    case StepStatus::converged: return false;
+    case StepStatus::converged:
+      return false;
     case StepStatus::cancelled:
       result_.status = interrupted_ ? RunStatus::interrupted : RunStatus::budget;
       result_.reason = interrupted_ ? "interrupted" : "the time allowed is used up";
@@ -200,12 +202,18 @@ void Run::march(RunOutputs* outputs) {
 
 const char* to_string(RunStatus status) {
   switch (status) {
-    case RunStatus::converged: return "converged";
-    case RunStatus::not_converged: return "not_converged";
-    case RunStatus::budget: return "budget";
-    case RunStatus::interrupted: return "interrupted";
-    case RunStatus::bad_input: return "bad_input";
-    case RunStatus::failed: break;
+    case RunStatus::converged:
+      return "converged";
+    case RunStatus::not_converged:
+      return "not_converged";
+    case RunStatus::budget:
+      return "budget";
+    case RunStatus::interrupted:
+      return "interrupted";
+    case RunStatus::bad_input:
+      return "bad_input";
+    case RunStatus::failed:
+      break;
   }
   return "failed";
 }

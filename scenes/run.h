@@ -47,18 +47,18 @@ const char* to_string(RunStatus status);
 struct MetricValue {
   MetricDef def;
   double value = 0;
-  bool reached = true;                // false: its time was not
-  std::optional<double> error;        // relative to the reference; of a reference 0: absolute
-  std::optional<bool> within;         // of the tolerance
+  bool reached = true;          // false: its time was not
+  std::optional<double> error;  // relative to the reference; of a reference 0: absolute
+  std::optional<bool> within;   // of the tolerance
 };
 
 struct RunOptions {
-  std::string folder;  // where outputs go; empty: none are written
-  int threads = 0;     // 0: all the machine has
-  std::optional<double> budget;                          // [s] of wall time
-  std::function<bool()> stop;                            // asked at every iteration; true interrupts
+  std::string folder;            // where outputs go; empty: none are written
+  int threads = 0;               // 0: all the machine has
+  std::optional<double> budget;  // [s] of wall time
+  std::function<bool()> stop;    // asked at every iteration; true interrupts
   std::function<void(const StepRecord&, int steps)> on_step;
-  std::function<void(const std::string&)> log;           // warnings
+  std::function<void(const std::string&)> log;  // warnings
 };
 
 struct RunResult {

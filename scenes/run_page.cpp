@@ -54,7 +54,8 @@ std::vector<PageField> page_fields() {
 }
 
 template <class Value>
-PageSeries series(const RunResult& r, const char* group, const std::string& name, const char* unit, Value value) {
+PageSeries series(const RunResult& r, const char* group, const std::string& name, const char* unit,
+                  Value value) {
   PageSeries s{group, name, unit};
   for (const StepRecord& record : r.records) {
     s.x.push_back(record.time);
@@ -80,17 +81,19 @@ std::vector<PageSeries> all_series(const RunView& view) {
   }
   out.push_back(series(r, "Energies", "elastic", "J", [](const StepRecord& s) { return s.elastic_energy; }));
   if (view.scene.analysis.type == AnalysisType::dynamics) {
-    out.push_back(series(r, "Energies", "kinetic", "J", [](const StepRecord& s) { return s.kinetic_energy; }));
+    out.push_back(
+        series(r, "Energies", "kinetic", "J", [](const StepRecord& s) { return s.kinetic_energy; }));
   }
-  out.push_back(series(r, "Newton iterations", "iterations", "", [](const StepRecord& s) { return s.iterations; }));
+  out.push_back(
+      series(r, "Newton iterations", "iterations", "", [](const StepRecord& s) { return s.iterations; }));
   // A logarithmic chart cannot show the zero of the rest state.
   const auto positive = [](double v) { return std::max(v, 1e-18); };
-  out.push_back(series(r, "Errors", "volume error", "",
-                       [&](const StepRecord& s) { return positive(s.volume_error); }));
+  out.push_back(
+      series(r, "Errors", "volume error", "", [&](const StepRecord& s) { return positive(s.volume_error); }));
   out.push_back(series(r, "Errors", "force residual", "",
                        [&](const StepRecord& s) { return positive(s.force_residual); }));
-  out.push_back(series(r, "Errors", "row residual", "",
-                       [&](const StepRecord& s) { return positive(s.row_residual); }));
+  out.push_back(
+      series(r, "Errors", "row residual", "", [&](const StepRecord& s) { return positive(s.row_residual); }));
   for (auto& s : out) s.log = s.group == "Errors";
   return out;
 }
@@ -109,7 +112,8 @@ PageReport report(const RunView& view) {
               {"Newton iterations", std::to_string(r.newton_iterations)},
               {"Wall time", number(r.wall_s, "%.2f") + " s, " + std::to_string(r.threads) + " threads"}};
   const StepRecord& end = r.records.back();
-  page.summary = {{"Status", to_string(r.status)}, {"Volume error", number(end.volume_error, "%.1e")},
+  page.summary = {{"Status", to_string(r.status)},
+                  {"Volume error", number(end.volume_error, "%.1e")},
                   {"J", number(end.min_J) + " to " + number(end.max_J)}};
   for (const MetricValue& m : r.metrics) {
     std::string text = number(m.value, "%.5g") + (m.def.unit.empty() ? "" : " " + m.def.unit);

@@ -1,7 +1,7 @@
 // A scene as plain data: bodies, effects, analysis, what to watch and what to compare with.
 //
-// The same data come from a C++ program (scenes/programs), from a scene file (scenes/scene.schema.json) or from
-// a test; build() turns them into a world and run_scene() of run.h runs them. Nothing here throws.
+// The same data come from a C++ program (scenes/programs), from a scene file (scenes/scene.schema.json) or
+// from a test; build() turns them into a world and run_scene() of run.h runs them. Nothing here throws.
 #pragma once
 
 #include <optional>
@@ -48,8 +48,8 @@ enum class AnalysisType : std::uint8_t { statics, dynamics };
 
 struct AnalysisDef {
   AnalysisType type = AnalysisType::statics;
-  double duration = 1;  // [s]; statics: final load factor
-  int steps = 10;       // results are reported this often
+  double duration = 1;         // [s]; statics: final load factor
+  int steps = 10;              // results are reported this often
   std::optional<double> step;  // [s], instead of steps
   Solver solver = Solver::automatic;
   int max_iterations = 60;

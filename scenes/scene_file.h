@@ -21,7 +21,8 @@ Result<SceneDef> override_scene(const SceneDef& scene, const Overrides& override
 // The scene as the text of a scene file. Mesh paths stay as they are.
 std::string to_json(const SceneDef& scene);
 
-// Every key that the parser knows, with its kind: "bodies[].materials[].young: number". For the schema's test.
+// Every key that the parser knows, with its kind: "bodies[].materials[].young: number". For the schema's
+// test.
 std::vector<std::string> scene_file_keys();
 
 }  // namespace isochor

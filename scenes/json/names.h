@@ -12,10 +12,10 @@ namespace isochor::scene_json {
 template <class E>
 struct Words;  // specialized below: `static constexpr std::array<std::pair<E, std::string_view>, n> list`
 
-#define ISOCHOR_WORDS(E, N, ...)                                                          \
-  template <>                                                                             \
-  struct Words<E> {                                                                       \
-    static constexpr std::array<std::pair<E, std::string_view>, N> list{{__VA_ARGS__}};   \
+#define ISOCHOR_WORDS(E, N, ...)                                                        \
+  template <>                                                                           \
+  struct Words<E> {                                                                     \
+    static constexpr std::array<std::pair<E, std::string_view>, N> list{{__VA_ARGS__}}; \
   }
 
 ISOCHOR_WORDS(Element, 3, {Element::tet4, "tet4"}, {Element::tet4_edge_smoothed, "tet4_edge_smoothed"},
@@ -23,14 +23,15 @@ ISOCHOR_WORDS(Element, 3, {Element::tet4, "tet4"}, {Element::tet4_edge_smoothed,
 ISOCHOR_WORDS(CellType, 2, {CellType::tet4, "tet4"}, {CellType::tet10, "tet10"});
 ISOCHOR_WORDS(MaterialLaw, 2, {MaterialLaw::neo_hookean, "neo_hookean"},
               {MaterialLaw::stable_neo_hookean, "stable_neo_hookean"});
-ISOCHOR_WORDS(BulkChoice, 2, {BulkChoice::consistent, "consistent"}, {BulkChoice::bulk_modulus, "bulk_modulus"});
+ISOCHOR_WORDS(BulkChoice, 2, {BulkChoice::consistent, "consistent"},
+              {BulkChoice::bulk_modulus, "bulk_modulus"});
 ISOCHOR_WORDS(VolumeStrainKind, 2, {VolumeStrainKind::linear, "linear"},
               {VolumeStrainKind::logarithmic, "logarithmic"});
 ISOCHOR_WORDS(CavityControl, 3, {CavityControl::pressure, "pressure"}, {CavityControl::volume, "volume"},
               {CavityControl::volume_ratio, "volume_ratio"});
 ISOCHOR_WORDS(AnalysisType, 2, {AnalysisType::statics, "static"}, {AnalysisType::dynamics, "dynamic"});
-ISOCHOR_WORDS(Solver, 4, {Solver::automatic, "automatic"}, {Solver::mumps, "mumps"}, {Solver::cholmod, "cholmod"},
-              {Solver::eigen, "eigen"});
+ISOCHOR_WORDS(Solver, 4, {Solver::automatic, "automatic"}, {Solver::mumps, "mumps"},
+              {Solver::cholmod, "cholmod"}, {Solver::eigen, "eigen"});
 ISOCHOR_WORDS(Component, 4, {Component::magnitude, "magnitude"}, {Component::x, "x"}, {Component::y, "y"},
               {Component::z, "z"});
 ISOCHOR_WORDS(Quantity, 12, {Quantity::displacement, "displacement"},
@@ -39,7 +40,8 @@ ISOCHOR_WORDS(Quantity, 12, {Quantity::displacement, "displacement"},
               {Quantity::volume_error, "volume_error"},
               {Quantity::constitutive_residual, "constitutive_residual"}, {Quantity::min_J, "min_J"},
               {Quantity::max_J, "max_J"}, {Quantity::elastic_energy, "elastic_energy"},
-              {Quantity::kinetic_energy, "kinetic_energy"}, {Quantity::newton_iterations, "newton_iterations"});
+              {Quantity::kinetic_energy, "kinetic_energy"},
+              {Quantity::newton_iterations, "newton_iterations"});
 
 // "none" stands beside the spaces of the engine: no rows at all.
 enum class VolumeSpaceWord : std::uint8_t { node, element, body, none };

@@ -22,7 +22,8 @@ Result<std::vector<Segment>> split(const std::string& path) {
     if (path[i] == '[') {
       const auto end = path.find(']', i);
       const std::string digits = end == std::string::npos ? "" : path.substr(i + 1, end - i - 1);
-      if (digits.empty() || digits.size() > 9 || digits.find_first_not_of("0123456789") != std::string::npos) {
+      if (digits.empty() || digits.size() > 9 ||
+          digits.find_first_not_of("0123456789") != std::string::npos) {
         return Error{"expected [number] at \"" + path.substr(i) + "\""};
       }
       segments.push_back({digits, true, std::stoul(digits)});
@@ -68,7 +69,8 @@ Result<Json*> enter(Json& at, const Segment& s, const std::string& so_far) {
   if (at.is_null()) at = s.is_index ? Json::array() : Json::object();
   if (at.is_array()) return enter_list(at, s, so_far);
   if (at.is_object() && !s.is_index) return &at[s.key];
-  return Error{so_far + " is " + shown(at) + ", it has no " + (s.is_index ? "[" + s.key + "]" : "\"" + s.key + "\"")};
+  return Error{so_far + " is " + shown(at) + ", it has no " +
+               (s.is_index ? "[" + s.key + "]" : "\"" + s.key + "\"")};
 }
 
 }  // namespace

@@ -116,7 +116,8 @@ bool Reader::read_vector(const Json& j, const std::string& where, Vec3& value) {
     return false;
   }
   for (int k = 0; k < 3; ++k) {
-    if (!read_number(j[static_cast<std::size_t>(k)], where + "[" + std::to_string(k) + "]", value[k])) return false;
+    if (!read_number(j[static_cast<std::size_t>(k)], where + "[" + std::to_string(k) + "]", value[k]))
+      return false;
   }
   return true;
 }
@@ -124,8 +125,10 @@ bool Reader::read_vector(const Json& j, const std::string& where, Vec3& value) {
 void Reader::text(const char* key, std::string& value) {
   const Json* j = find(key);
   if (!j) return;
-  if (j->is_string()) value = j->get<std::string>();
-  else fail_type(at(key), "a text \"...\"", *j);
+  if (j->is_string())
+    value = j->get<std::string>();
+  else
+    fail_type(at(key), "a text \"...\"", *j);
 }
 
 void Reader::required_text(const char* key, std::string& value) {
@@ -139,9 +142,12 @@ void Reader::number(const char* key, double& value, double) {
 void Reader::number_or_inf(const char* key, double& value, double) {
   const Json* j = find(key);
   if (!j) return;
-  if (j->is_string() && j->get_ref<const std::string&>() == "inf") value = std::numeric_limits<double>::infinity();
-  else if (j->is_number()) read_number(*j, at(key), value);
-  else fail_type(at(key), "a number or \"inf\"", *j);
+  if (j->is_string() && j->get_ref<const std::string&>() == "inf")
+    value = std::numeric_limits<double>::infinity();
+  else if (j->is_number())
+    read_number(*j, at(key), value);
+  else
+    fail_type(at(key), "a number or \"inf\"", *j);
 }
 
 void Reader::optional_number(const char* key, std::optional<double>& value) {
@@ -157,8 +163,10 @@ void Reader::integer(const char* key, int& value, int) {
 void Reader::flag(const char* key, bool& value, bool) {
   const Json* j = find(key);
   if (!j) return;
-  if (j->is_boolean()) value = j->get<bool>();
-  else fail_type(at(key), "true or false", *j);
+  if (j->is_boolean())
+    value = j->get<bool>();
+  else
+    fail_type(at(key), "true or false", *j);
 }
 
 void Reader::vector(const char* key, Vec3& value, const Vec3&) {
@@ -173,7 +181,8 @@ void Reader::integers(const char* key, std::array<int, 3>& value) {
   const Json* j = find(key);
   if (!j) return;
   if (!j->is_array() || j->size() != 3) return fail_type(at(key), "three whole numbers [nx, ny, nz]", *j);
-  for (std::size_t k = 0; k < 3; ++k) read_integer((*j)[k], at(key) + "[" + std::to_string(k) + "]", value[k]);
+  for (std::size_t k = 0; k < 3; ++k)
+    read_integer((*j)[k], at(key) + "[" + std::to_string(k) + "]", value[k]);
 }
 
 void Reader::names(const char* key, std::vector<std::string>& value) {
@@ -212,7 +221,8 @@ void Reader::boxes(const char* key, std::vector<std::array<Vec3, 2>>& value) {
   for (std::size_t i = 0; i < j->size(); ++i) {
     const std::string where = at(key) + "[" + std::to_string(i) + "]";
     const Json& box = (*j)[i];
-    if (!box.is_array() || box.size() != 2) return fail_type(where, "two corners [[x, y, z], [x, y, z]]", box);
+    if (!box.is_array() || box.size() != 2)
+      return fail_type(where, "two corners [[x, y, z], [x, y, z]]", box);
     auto& corners = value.emplace_back();
     for (std::size_t c = 0; c < 2; ++c) {
       if (!read_vector(box[c], where + "[" + std::to_string(c) + "]", corners[c])) return;
@@ -234,7 +244,8 @@ void Reader::read_direction(const Json& j, const std::string& where, std::vector
 void Reader::directions(const char* key, std::vector<Vec3>& value) {
   const Json* j = find(key);
   if (!j) return;
-  if (j->is_string()) read_direction(*j, at(key), value);
+  if (j->is_string())
+    read_direction(*j, at(key), value);
   else if (expect_list(*j, key)) {
     for (std::size_t i = 0; i < j->size(); ++i) {
       read_direction((*j)[i], at(key) + "[" + std::to_string(i) + "]", value);
@@ -248,8 +259,10 @@ void Reader::angle(const char* radians, const char* degrees, double& value) {
   const Json* r = find(radians);
   const Json* d = find(degrees);
   if (!r && !d) return fail_here(std::string("\"") + radians + "\" [rad] or \"" + degrees + "\" is missing");
-  if (r) read_number(*r, at(radians), value);
-  else if (read_number(*d, at(degrees), value)) value *= std::numbers::pi / 180;
+  if (r)
+    read_number(*r, at(radians), value);
+  else if (read_number(*d, at(degrees), value))
+    value *= std::numbers::pi / 180;
 }
 
 void Reader::body(const char* key, BodyId& value) {
@@ -262,9 +275,12 @@ void Reader::body(const char* key, BodyId& value) {
 }
 
 void Reader::read_plain_curve(double end, Curve& value, CurveStart start) const {
-  if (context_.analysis == AnalysisType::dynamics || start == CurveStart::constant) value = Curve::constant(end);
-  else if (start == CurveStart::zero) value = Curve::ramp(end);
-  else value = Curve{{{0, 1}, {1, end}}};
+  if (context_.analysis == AnalysisType::dynamics || start == CurveStart::constant)
+    value = Curve::constant(end);
+  else if (start == CurveStart::zero)
+    value = Curve::ramp(end);
+  else
+    value = Curve{{{0, 1}, {1, end}}};
 }
 
 void Reader::read_curve(const Json& j, const std::string& where, Curve& value, CurveStart start) {
@@ -284,8 +300,10 @@ void Reader::read_curve(const Json& j, const std::string& where, Curve& value, C
 }
 
 void Reader::curve(const char* key, Curve& value, CurveStart start, bool) {
-  if (const Json* j = find(key)) read_curve(*j, at(key), value, start);
-  else read_plain_curve(1, value, start);
+  if (const Json* j = find(key))
+    read_curve(*j, at(key), value, start);
+  else
+    read_plain_curve(1, value, start);
 }
 
 void Reader::required_curve(const char* key, Curve& value, CurveStart start) {
@@ -312,7 +330,8 @@ void Reader::either(const char* file, const char* box, std::variant<MeshFile, Bo
   // The list of known keys is that of both forms.
   for (const char* key : {file, box, "scale"}) known_.emplace_back(key);
   if (json_.contains(box)) mesh = BoxMeshDef{};
-  if (json_.contains(box) && json_.contains("scale")) fail_here("\"scale\" belongs to a file; give the box its size");
+  if (json_.contains(box) && json_.contains("scale"))
+    fail_here("\"scale\" belongs to a file; give the box its size");
 }
 
 void Reader::finish() {

@@ -76,8 +76,10 @@ class Reader {
   template <class T>
   void object(const char* key, T& value) {
     const Json* j = find(key);
-    if (j) read_object(*j, at(key), value);
-    else if (needs_object<T>) fail_here(std::string("\"") + key + "\" is missing");
+    if (j)
+      read_object(*j, at(key), value);
+    else if (needs_object<T>)
+      fail_here(std::string("\"") + key + "\" is missing");
   }
   template <class T>
   void optional_object(const char* key, T& value, bool) {

@@ -30,7 +30,8 @@ class StrictParse {
     if (event == Json::parse_event_t::object_end && !keys_.empty()) keys_.pop_back();
     if (event == Json::parse_event_t::key && !keys_.empty()) {
       const auto& key = parsed.get_ref<const std::string&>();
-      if (!keys_.back().insert(key).second) fail("key \"" + key + "\" is given twice in one object; keep one");
+      if (!keys_.back().insert(key).second)
+        fail("key \"" + key + "\" is given twice in one object; keep one");
     }
     return true;
   }
@@ -69,7 +70,7 @@ Result<Json> parse_text(const std::string& text, const std::string& source) {
     if (!json.is_object()) return Error{source + ": a scene file is one object {...}"};
     return json;
   } catch (const std::exception& e) {
-    return Error{source + ": " + plain(e.what())};
+    return Error{source + ": " + (strict.error().empty() ? plain(e.what()) : strict.error())};
   }
 }
 

@@ -17,7 +17,7 @@ Json list_of(const Vec3& v) {
 }
 
 Json stages(const StageTimes& t) {
-  return {{"analyze", t.analyze}, {"evaluate", t.evaluate}, {"gather", t.gather},          {"factor", t.factor},
+  return {{"analyze", t.analyze}, {"evaluate", t.evaluate},       {"gather", t.gather}, {"factor", t.factor},
           {"solve", t.solve},     {"line_search", t.line_search}, {"total", t.total}};
 }
 
@@ -45,7 +45,8 @@ void add_state(Json& j, const RunResult& r) {
   for (const char* key : {"probes", "cavities", "reactions"}) j[key] = Json::object();
   for (std::size_t p = 0; p < r.probes.size(); ++p) j["probes"][r.probes[p]] = list_of(end.probes[p]);
   for (std::size_t c = 0; c < r.cavities.size(); ++c) {
-    j["cavities"][r.cavities[c]] = {{"pressure_Pa", end.cavities[c].pressure}, {"volume_m3", end.cavities[c].volume}};
+    j["cavities"][r.cavities[c]] = {{"pressure_Pa", end.cavities[c].pressure},
+                                    {"volume_m3", end.cavities[c].volume}};
   }
   for (std::size_t s = 0; s < r.supports.size(); ++s) {
     j["reactions"][r.supports[s]] = {{"force_N", list_of(end.reactions[s].force)},

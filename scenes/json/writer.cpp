@@ -10,8 +10,10 @@ Json plain_number(double value) {
 }
 
 void Writer::number_or_inf(const char* key, double value, double standard) {
-  if (std::isinf(value)) json_[key] = "inf";
-  else number(key, value, standard);
+  if (std::isinf(value))
+    json_[key] = "inf";
+  else
+    number(key, value, standard);
 }
 
 void Writer::points(const char* key, const std::vector<Vec3>& value) {
@@ -32,8 +34,10 @@ void Writer::directions(const char* key, const std::vector<Vec3>& value) {
       if (d == axis) letters += static_cast<char>('x' + k);
     }
   }
-  if (letters.size() == value.size()) json_[key] = letters;
-  else points(key, value);
+  if (letters.size() == value.size())
+    json_[key] = letters;
+  else
+    points(key, value);
 }
 
 void Writer::body(const char* key, BodyId value) {
@@ -51,7 +55,8 @@ void Writer::required_curve(const char* key, const Curve& value, CurveStart star
   } else if (!constant && p.size() == 2 && p[0] == std::array{0.0, first} && p[1][0] == 1) {
     json_[key] = plain_number(p[1][1]);
   } else {
-    for (const auto& point : p) json_[key].push_back(Json::array({plain_number(point[0]), plain_number(point[1])}));
+    for (const auto& point : p)
+      json_[key].push_back(Json::array({plain_number(point[0]), plain_number(point[1])}));
   }
 }
 

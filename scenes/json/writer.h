@@ -99,7 +99,9 @@ class Writer {
       write(all.back(), item);
     }
   }
-  static Json list_of(const Vec3& v) { return Json::array({plain_number(v.x), plain_number(v.y), plain_number(v.z)}); }
+  static Json list_of(const Vec3& v) {
+    return Json::array({plain_number(v.x), plain_number(v.y), plain_number(v.z)});
+  }
 
   Json& json_;
   const SceneDef& scene_;

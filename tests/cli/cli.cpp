@@ -32,7 +32,8 @@ struct Outcome {
 
 class Shell {
  public:
-  Shell() : folder_(fs::temp_directory_path() / std::string("isochor_cli_").append(std::to_string(::getpid()))) {
+  Shell()
+      : folder_(fs::temp_directory_path() / std::string("isochor_cli_").append(std::to_string(::getpid()))) {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }
@@ -48,9 +49,12 @@ class Shell {
     command.append(folder_.string()).append("' && '" ISOCHOR_BINARY "' ").append(arguments);
     command.append(" > out.txt 2> err.txt");
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000, slurp(folder_ / "out.txt"), slurp(folder_ / "err.txt")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000, slurp(folder_ / "out.txt"),
+            slurp(folder_ / "err.txt")};
   }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+  }
 
  private:
   fs::path folder_;
@@ -83,9 +87,10 @@ TEST_CASE("help, list and version") {
 
 TEST_CASE("wrong arguments are bad input") {
   Shell shell;
-  for (const char* command : {"", "fly", "run --threads many", "run --threads -1", "run --budget 0", "run nosuchscene",
-                              "run no/such/file.json", "run finger --set", "run finger --set x", "check",
-                              "check no.msh", "run finger --bogus", "run finger --set cavities[0].presure=1"}) {
+  for (const char* command :
+       {"", "fly", "run --threads many", "run --threads -1", "run --budget 0", "run nosuchscene",
+        "run no/such/file.json", "run finger --set", "run finger --set x", "check", "check no.msh",
+        "run finger --bogus", "run finger --set cavities[0].presure=1"}) {
     INFO(command);
     const Outcome o = shell.run(command);
     CHECK(o.code == 2);
@@ -125,7 +130,8 @@ TEST_CASE("the output folder must be writable before anything is solved") {
 TEST_CASE("no convergence and a spent budget have codes of their own") {
   Shell shell;
   shell.write("block.json", kBlock);
-  CHECK(shell.run("run block.json --set analysis.max_iterations=1 --set tractions.pull.amount=1000").code == 3);
+  CHECK(shell.run("run block.json --set analysis.max_iterations=1 --set tractions.pull.amount=1000").code ==
+        3);
   CHECK(Json::parse(slurp(shell.folder() / "out/block/summary.json"))["status"] == "not_converged");
   CHECK(shell.run("run block.json --budget 1e-6").code == 4);
 }
@@ -151,8 +157,8 @@ TEST_CASE("an interrupt ends a run in good order") {
     if (child == 0) {
       // Silent, and long enough to be caught on the way.
       if (!std::freopen("/dev/null", "w", stdout) || !std::freopen("/dev/null", "w", stderr)) _exit(99);
-      ::execl(ISOCHOR_BINARY, "isochor", "run", "tube", "--set", "analysis.steps=500", "--threads", "1", "--out",
-              out.c_str(), static_cast<char*>(nullptr));
+      ::execl(ISOCHOR_BINARY, "isochor", "run", "tube", "--set", "analysis.steps=500", "--threads", "1",
+              "--out", out.c_str(), static_cast<char*>(nullptr));
       _exit(99);
     }
     REQUIRE(child > 0);

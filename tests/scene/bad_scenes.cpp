@@ -49,7 +49,8 @@ TEST_CASE("unknown keys are errors with the nearest known one") {
 }
 
 TEST_CASE("wrong types, missing and contradicting values are named") {
-  CHECK_THAT(error_with("analysis.steps=many"), Contains("analysis.steps: expected a whole number, found \"many\""));
+  CHECK_THAT(error_with("analysis.steps=many"),
+             Contains("analysis.steps: expected a whole number, found \"many\""));
   CHECK_THAT(error_with("analysis.steps=2.5"), Contains("whole number"));
   CHECK_THAT(error_with("analysis.steps=0"), Contains("analysis.steps = 0"));
   CHECK_THAT(error_with("analysis.step=0.5"), Contains("both \"steps\" and \"step\""));
@@ -77,7 +78,8 @@ TEST_CASE("what only the mesh can tell is named before the solve") {
   CHECK_THAT(build_error_with("bodies[0].materials[0].young=-1"), Contains("young = -1"));
   CHECK_THAT(build_error_with("dirichlet=[]"), Contains("block"));
   CHECK_THAT(build_error_with("volumes[0].space=none"), Contains("0.5"));
-  CHECK_THAT(build_error_with("bodies[0].mesh={\"file\":\"no.msh\"}"), Contains("bodies[0].mesh") && Contains("no.msh"));
+  CHECK_THAT(build_error_with("bodies[0].mesh={\"file\":\"no.msh\"}"),
+             Contains("bodies[0].mesh") && Contains("no.msh"));
 }
 
 TEST_CASE("overrides that lead nowhere are named") {
@@ -91,7 +93,8 @@ TEST_CASE("overrides that lead nowhere are named") {
 }
 
 TEST_CASE("overrides change what they name") {
-  const SceneDef s = test::small_scene({"tractions.pull.amount=2", "volumes[0].space=body", "analysis.steps=7"});
+  const SceneDef s =
+      test::small_scene({"tractions.pull.amount=2", "volumes[0].space=body", "analysis.steps=7"});
   REQUIRE(s.tractions.size() == 1);
   CHECK(evaluate(s.tractions[0].amount, 1) == 2);
   CHECK(evaluate(s.tractions[0].amount, 0.5) == 1);
@@ -109,7 +112,8 @@ TEST_CASE("truncated and garbled files never crash") {
   std::mt19937 random(7);
   for (int round = 0; round < 2000; ++round) {
     std::string garbled = text;
-    for (int k = 0; k < 1 + round % 4; ++k) garbled[random() % garbled.size()] = static_cast<char>(random() % 256);
+    for (int k = 0; k < 1 + round % 4; ++k)
+      garbled[random() % garbled.size()] = static_cast<char>(random() % 256);
     (void)parse_scene(garbled, "s.json", ".");
   }
   std::string noise(5000, '\0');
@@ -121,7 +125,8 @@ TEST_CASE("every value replaced by every wrong one is refused or harmless") {
   for (const std::string& line : scene_file_keys()) {
     std::string path = line.substr(0, line.find(": "));
     for (auto at = path.find("[]"); at != std::string::npos; at = path.find("[]")) path.replace(at, 2, "[0]");
-    for (const char* value : {"null", "true", "-1", "1e308", "\"\"", "[]", "{}", "[[[]]]", "[null]", "{\"a\":1}"}) {
+    for (const char* value :
+         {"null", "true", "-1", "1e308", "\"\"", "[]", "{}", "[[[]]]", "[null]", "{\"a\":1}"}) {
       (void)parse_scene(test::small_text(), "s.json", ".", {path + std::string("=") + value});
     }
   }

@@ -1,6 +1,7 @@
 // Every scene of the library: as a program and as a file it is the same scene.
-#include "catch.h"
 #include "scenes/library.h"
+
+#include "catch.h"
 #include "small_scene.h"
 
 using namespace isochor;

@@ -29,9 +29,10 @@ TEST_CASE("a run leaves frames, table, page and summary") {
   }
   const Json j = Json::parse(test::slurp(scratch / "out" / "summary.json"));
   for (const char* key :
-       {"status", "reason", "scene", "steps", "newton_iterations", "factorizations", "wall_s", "stage_s", "unknowns",
-        "elements", "volume_error", "constitutive_residual", "min_J", "max_J", "probes", "cavities", "reactions",
-        "metrics", "state_hash", "version", "machine", "threads", "warnings"}) {
+       {"status",     "reason",  "scene",    "steps",    "newton_iterations", "factorizations",
+        "wall_s",     "stage_s", "unknowns", "elements", "volume_error",      "constitutive_residual",
+        "min_J",      "max_J",   "probes",   "cavities", "reactions",         "metrics",
+        "state_hash", "version", "machine",  "threads",  "warnings"}) {
     INFO(key);
     CHECK(j.contains(key));
   }
@@ -85,8 +86,8 @@ TEST_CASE("budget, interruption and failure keep what was reached") {
   }
   SECTION("no equilibrium") {
     // A point load that no soft block carries in two iterations.
-    const RunResult r = run_scene(test::small_scene({"analysis.max_iterations=1", "tractions.pull.amount=1000"}),
-                                  options);
+    const RunResult r =
+        run_scene(test::small_scene({"analysis.max_iterations=1", "tractions.pull.amount=1000"}), options);
     CHECK(r.status == RunStatus::not_converged);
     CHECK_FALSE(r.reason.empty());
     CHECK(Json::parse(test::slurp(scratch / "summary.json"))["status"] == "not_converged");
@@ -94,8 +95,9 @@ TEST_CASE("budget, interruption and failure keep what was reached") {
 }
 
 TEST_CASE("dynamics falls freely") {
-  const RunResult r = run_scene(test::small_scene({"analysis={\"type\":\"dynamic\",\"duration\":0.1,\"step\":0.001}",
-                                                   "dirichlet=[]", "tractions=[]", "gravity=[0,0,-10]"}));
+  const RunResult r =
+      run_scene(test::small_scene({"analysis={\"type\":\"dynamic\",\"duration\":0.1,\"step\":0.001}",
+                                   "dirichlet=[]", "tractions=[]", "gravity=[0,0,-10]"}));
   INFO(r.reason);
   REQUIRE(r.status == RunStatus::converged);
   // Implicit Euler: half g t (t + h).
@@ -113,11 +115,12 @@ TEST_CASE("two bodies have a series of frames each") {
   test::Scratch scratch("two");
   RunOptions options;
   options.folder = scratch.string();
-  const RunResult r = run_scene(
-      test::small_scene({"bodies[1]={\"name\":\"other\",\"mesh\":{\"box\":{\"lower\":[5,0,0],\"upper\":[6,1,1]}},"
-                         "\"element\":\"tet10\",\"materials\":[{\"young\":1e4,\"poisson\":0.3}]}",
-                         "dirichlet[1]={\"name\":\"floor\",\"where\":{\"body\":\"other\",\"surfaces\":\"y0\"}}"}),
-      options);
+  const RunResult r =
+      run_scene(test::small_scene(
+                    {"bodies[1]={\"name\":\"other\",\"mesh\":{\"box\":{\"lower\":[5,0,0],\"upper\":[6,1,1]}},"
+                     "\"element\":\"tet10\",\"materials\":[{\"young\":1e4,\"poisson\":0.3}]}",
+                     "dirichlet[1]={\"name\":\"floor\",\"where\":{\"body\":\"other\",\"surfaces\":\"y0\"}}"}),
+                options);
   INFO(r.reason);
   CHECK(r.status == RunStatus::converged);
   CHECK(fs::exists(scratch / "small_block.pvd"));
@@ -142,7 +145,8 @@ TEST_CASE("probes are interpolated where no node is") {
 TEST_CASE("metrics know reference, tolerance and time") {
   const RunResult r = run_scene(test::small_scene(
       {"metrics[0].reference=0.1", "metrics[0].tolerance=0.001",
-       "metrics[1]={\"name\":\"wall\",\"quantity\":\"reaction_force\",\"of\":\"wall\",\"component\":\"x\",\"scale\":-1,"
+       "metrics[1]={\"name\":\"wall\",\"quantity\":\"reaction_force\",\"of\":\"wall\",\"component\":\"x\","
+       "\"scale\":-1,"
        "\"reference\":100,\"tolerance\":1e-6}",
        "metrics[2]={\"name\":\"early\",\"of\":\"tip\",\"component\":\"x\",\"time\":0.3333333333333333}"}));
   REQUIRE(r.metrics.size() == 3);

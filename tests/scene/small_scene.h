@@ -43,7 +43,8 @@ inline std::string slurp(const std::filesystem::path& path) {
 class Scratch {
  public:
   explicit Scratch(const std::string& name)
-      : path_(std::filesystem::temp_directory_path() / ("isochor_" + name + "_" + std::to_string(::getpid()))) {
+      : path_(std::filesystem::temp_directory_path() /
+              ("isochor_" + name + "_" + std::to_string(::getpid()))) {
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }
