@@ -152,6 +152,10 @@ double Newton::potential(const NewtonProblem& p, std::span<const Vec3> x) const 
 // Size of the numbers that cancel in the potential: what its rounding error is relative to.
 double Newton::potential_magnitude(const NewtonProblem& p, std::span<const Vec3> x) const {
   double sum = assembly_.absolute_energy();
+  // However small the strain, an energy is a difference of numbers as large as the stiffness of its element:
+  // its rounding error does not vanish with it.
+  const double spacing = system_->length() / std::cbrt(static_cast<double>(x.size()));
+  for (const double k : rest_stiffness_) sum += 1e-3 * k * spacing * spacing;
   const auto& rest = system_->parts().rest;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3 u = x[i] - rest[i];
