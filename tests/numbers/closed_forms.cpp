@@ -23,11 +23,13 @@ double sphere_pressure(double a) {
 
 // Volume of the cavity over its rest volume at an inner stretch: `power` 2 for the tube, 3 for the sphere.
 struct Vessel {
-  World world = make_world(static_options());
+  World world;
   BodyId body{};
   EffectId chamber{};
 
-  Vessel(const std::string& shape, Element element, CavityControl control) {
+  Vessel(const std::string& shape, Element element, CavityControl control,
+         const WorldOptions& options = static_options())
+      : world(make_world(options)) {
     const std::string file = shape + (element == Element::tet10 ? "_tet10" : "");
     body = add_body(world, scene_mesh(file), element, neo_hookean(3, 0.5));
     add_volume(world, body);
@@ -88,7 +90,7 @@ TEST_CASE("torsion of a cylinder") {
         const Vec3 x = world.positions(body)[i];
         radius = std::max(radius, std::hypot(x.x, x.y));
       }
-      CHECK(radius == Approx(1).epsilon(5e-3));
+      CHECK(radius == Approx(1).epsilon(element == Element::tet10 ? 2e-3 : 1e-2));
     }
   }
 }
@@ -100,7 +102,6 @@ TEST_CASE("pressure in a thick tube and a thick sphere") {
       Vessel v(shape, element, CavityControl::volume_ratio);
       CHECK(v.world.mesh(v.body).cell_count() < 10000);
       const double rest = gauge(v.world, "volume");
-      double before = 1;
       for (const double stretch : {1.25, 1.5, 2.0}) {
         const double ratio = tube ? stretch * stretch : stretch * stretch * stretch;
         REQUIRE(v.world.set_amount(v.chamber, ratio).ok());
@@ -117,9 +118,7 @@ TEST_CASE("pressure in a thick tube and a thick sphere") {
         CHECK(v.radius(2, tube) == Approx(outer).epsilon(2e-3));
         CHECK(v.radius(1, tube) == Approx(stretch).epsilon(5e-3));
         CHECK(v.world.measures(v.body).volume_error < 1e-9);
-        before = ratio;
       }
-      (void)before;
     }
   }
 }
@@ -146,12 +145,17 @@ TEST_CASE("volume control follows the sphere through its limit point") {
 TEST_CASE("a pressure that no equilibrium carries is rejected with a reason") {
   for (const auto& [shape, pressure] : {std::pair("thick_tube", 0.75), {"thick_sphere", 0.85}}) {
     INFO(shape);
-    Vessel v(shape, Element::tet4_edge_smoothed, CavityControl::pressure);
+    // Few and short attempts: the default would find the last equilibrium more closely, and take longer.
+    WorldOptions options = static_options();
+    options.max_iterations = 12;
+    options.smallest_fraction = 1.0 / 8;
+    Vessel v(shape, Element::tet4, CavityControl::pressure, options);
     REQUIRE(v.world.set_amount(v.chamber, pressure).ok());
     const StepReport r = v.world.advance(1);
     CHECK(r.status == StepStatus::rejected);
     INFO(r.reason);
     CHECK(r.reason.find("no equilibrium") != std::string::npos);
+    CHECK(r.reason.find("limit point") != std::string::npos);
     CHECK(r.time < 1);
     CHECK(r.time > 0.3);
     // What is left is the last equilibrium: finite, with its volume.
