@@ -1,5 +1,6 @@
 #include "constraints/surface_pool.h"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 namespace isochor {
@@ -148,6 +149,29 @@ void add_cross(Mat3& block, double s, const Vec3& w) {
   block(2, 1) += s * w.x;
 }
 
+// Raises the negative eigenvalues of one face's packed Hessian to zero.
+void project_blocks(std::size_t n, Mat3* block) {
+  // At most six nodes: the matrix lives on the stack.
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 18, 18>;
+  Matrix h(3 * static_cast<int>(n), 3 * static_cast<int>(n));
+  const auto each = [&](auto&& visit) {
+    for (std::size_t a = 0, k = 0; a < n; ++a) {
+      for (std::size_t b = 0; b <= a; ++b, ++k) {
+        for (int i = 0; i < 3; ++i) {
+          for (int j = 0; j < 3; ++j)
+            visit(block[k](i, j), 3 * static_cast<int>(a) + i, 3 * static_cast<int>(b) + j);
+        }
+      }
+    }
+  };
+  each([&](double& value, int row, int col) { h(row, col) = h(col, row) = value; });
+  if (!h.allFinite()) return;
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(h);
+  const Matrix fixed = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+                       eigen.eigenvectors().transpose();
+  each([&](double& value, int row, int col) { value = fixed(row, col); });
+}
+
 }  // namespace
 
 const FaceRule& triangle3_rule() {
@@ -166,7 +190,6 @@ const FaceRule& bulge3_rule() {
   static const FaceRule rule = make_bulge3();
   return rule;
 }
-
 const FaceRule& fan2_rule() {
   static const FaceRule rule = detach_apex(triangle3_rule());
   return rule;
@@ -239,6 +262,7 @@ void EnclosedVolumePool::evaluate(const StencilRequest& request, const StencilSl
       }
     }
     for (std::size_t a = 0; a < n; ++a) slots.gradient[first + a] = sigma * slots.jacobian[first + a];
+    if (block && request.definiteness == Definiteness::projected) project_blocks(n, block);
   }
 }
 

@@ -136,7 +136,7 @@ void Newton::calibrate() {
 
 double Newton::potential(const NewtonProblem& p, std::span<const Vec3> x) const {
   const System& s = *system_;
-  double inertia = 0, work = 0, pressure = 0;
+  double inertia = 0, work = 0, given = 0;
   const auto& rest = s.parts().rest;
   for (std::size_t i = 0; i < x.size(); ++i) work += dot(p.force[i], x[i] - rest[i]);
   if (p.mass_scale > 0) {
@@ -145,8 +145,8 @@ double Newton::potential(const NewtonProblem& p, std::span<const Vec3> x) const 
       inertia += s.parts().mass[i] * dot(d, d);
     }
   }
-  for (std::size_t r = 0; r < prescribed_phi_.size(); ++r) pressure += p.prescribed[r] * prescribed_phi_[r];
-  return assembly_.energy() + 0.5 * p.mass_scale * inertia - work + pressure;
+  for (std::size_t r = 0; r < prescribed_phi_.size(); ++r) given += p.prescribed[r] * prescribed_phi_[r];
+  return assembly_.energy() + 0.5 * p.mass_scale * inertia - work + given;
 }
 
 // Size of the numbers that cancel in the potential: what its rounding error is relative to.
@@ -440,7 +440,7 @@ bool Newton::search(const NewtonProblem& p, std::span<Vec3> x, std::span<double>
   const double slope = merit_slope(lambda);
   std::copy(x.begin(), x.end(), x_trial_.begin());
   const double start = merit(p, 0, lambda);
-  const double noise = 1e-13 * (potential_magnitude(p, x) + std::abs(start));
+  const double noise = 1e-12 * (potential_magnitude(p, x) + std::abs(start));
   const Residuals before = measure(p, x);
   double longest = 0;
   for (const Vec3& d : dx_) longest = std::max(longest, norm(d));
@@ -529,7 +529,9 @@ NewtonReport Newton::solve(const NewtonProblem& p, const NewtonOptions& options,
     if (iteration == 0 && !std::isfinite(assembly_.energy())) return fail(NewtonStatus::not_finite);
     position_gap(p, x);
     if (cancelled && cancelled()) return fail(NewtonStatus::cancelled);
-    if (iteration >= options.max_iterations) return fail(NewtonStatus::iteration_limit);
+    if (iteration >= options.max_iterations || report.factorizations >= options.max_factorizations) {
+      return fail(NewtonStatus::iteration_limit);
+    }
     // A state that is already in balance stays to the last bit.
     if (iteration == 0 && balanced(p, options, x, report)) return report;
     if (!factor(p, x, lambda, report)) {

@@ -22,6 +22,7 @@ namespace isochor {
 
 struct NewtonOptions {
   int max_iterations = 60;
+  int max_factorizations = 1000;  // mending an inertia takes more than one an iteration
   // Residual force against the magnitudes that cancel in it, in the norm sqrt(sum |r_i|^2 / k_i), k_i the
   // stiffness of a node at rest plus its inertia.
   double force_tolerance = 1e-9;

@@ -148,7 +148,7 @@ void World::Impl::evaluate_data(double t) {
   }
 }
 
-NewtonReport World::Impl::attempt(double h, int max_iterations) {
+NewtonReport World::Impl::attempt(double h, int max_iterations, int max_factorizations) {
   const double t_new = state.t + h;
   evaluate_data(t_new);
   options.scheme->predict(state, h, predicted);
@@ -161,6 +161,7 @@ NewtonReport World::Impl::attempt(double h, int max_iterations) {
   problem.position = position;
   NewtonOptions newton_options;
   newton_options.max_iterations = max_iterations;
+  newton_options.max_factorizations = max_factorizations;
   newton_options.force_tolerance = options.force_tolerance;
   newton_options.row_tolerance = options.row_tolerance;
   newton->progress = nullptr;
@@ -254,11 +255,12 @@ StepReport World::step(double h) {
   const auto start = std::chrono::steady_clock::now();
   const StageSeconds before = w.newton->seconds();
   w.cancel_requested = false;
-  const std::vector<double> amounts = w.save_amounts();
+  w.amounts_before.clear();
+  w.save_amounts(w.amounts_before);
   w.begin_amounts(w.state.t, w.state.t + h);
   StepReport report;
   const double t_target = w.state.t + h;
-  const NewtonReport r = w.attempt(h, w.options.max_iterations);
+  const NewtonReport r = w.attempt(h, w.options.max_iterations, 10 * w.options.max_iterations);
   accumulate(report, r);
   report.substeps = 1;
   if (r.status == NewtonStatus::cancelled) {
@@ -269,7 +271,7 @@ StepReport World::step(double h) {
     report.rejected_substeps = 1;
     report.reason = failure_text(r, t_target);
   }
-  if (report.status != StepStatus::converged) w.load_amounts(amounts);
+  if (report.status != StepStatus::converged) w.load_amounts(w.amounts_before);
   w.finish_report(report, before, seconds_since(start));
   return report;
 }
@@ -286,7 +288,7 @@ StepReport World::advance(double h) {
   const double t0 = w.state.t, t_end = t0 + h;
   w.begin_amounts(t0, t_end);
   StepReport report;
-  constexpr int patience = 25;
+  constexpr int patience = 25, patience_for_factors = 35;
   double increment = h;
   int successes = 1;
   while (w.state.t < t_end - 1e-12 * h) {
@@ -297,7 +299,8 @@ StepReport World::advance(double h) {
     // wasted.
     const bool last_chance = 0.5 * dt < w.options.smallest_fraction * h;
     const NewtonReport r =
-        w.attempt(dt, last_chance ? w.options.max_iterations : std::min(w.options.max_iterations, patience));
+        last_chance ? w.attempt(dt, w.options.max_iterations, 2 * w.options.max_iterations)
+                    : w.attempt(dt, std::min(w.options.max_iterations, patience), patience_for_factors);
     accumulate(report, r);
     if (r.status == NewtonStatus::converged) {
       ++report.substeps;
@@ -357,12 +360,10 @@ Result<void> World::set_amount(EffectId effect, double amount) {
   return {};
 }
 
-std::vector<double> World::Impl::save_amounts() const {
-  std::vector<double> all;
+void World::Impl::save_amounts(std::vector<double>& all) const {
   for (const auto& instance : instances) {
     if (const Amount* a = instance->amount()) a->save(all);
   }
-  return all;
 }
 
 void World::Impl::load_amounts(std::span<const double> all) {

@@ -28,15 +28,17 @@ struct World::Impl {
   std::vector<Vec3> x_trial, predicted, force, position, reactions;
   std::vector<double> weight, lambda_trial, target, prescribed;  // weight: consistent nodal mass [kg]
 
+  std::vector<double> amounts_before;
+
   bool compiled() const { return newton != nullptr; }
   Result<void> compile();
   Result<void> compile_once();
   void allocate();
-  std::vector<double> save_amounts() const;
+  void save_amounts(std::vector<double>& all) const;
   void load_amounts(std::span<const double> all);
   void begin_amounts(double t0, double t1);
   void evaluate_data(double t);
-  NewtonReport attempt(double h, int max_iterations);
+  NewtonReport attempt(double h, int max_iterations, int max_factorizations);
   StepReport invalid(std::string reason) const;
   void finish_report(StepReport& report, const StageSeconds& before, double total) const;
   // phi - target - C lambda of all compliant rows at the state.

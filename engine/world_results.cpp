@@ -197,7 +197,8 @@ std::vector<std::byte> World::save() const {
   std::vector<std::byte> out;
   Impl& w = *impl_;
   if (!w.compile()) return out;
-  const std::vector<double> amounts = w.save_amounts();
+  std::vector<double> amounts;
+  w.save_amounts(amounts);
   const std::uint64_t sizes[5] = {w.state.x.size(), w.state.lambda.size(), w.state.extra.size(),
                                   amounts.size(), w.reactions.size()};
   put(out, &kSaveMagic, 1);

@@ -54,7 +54,7 @@ struct AnalysisDef {
   Solver solver = Solver::automatic;
   int max_iterations = 60;
   double force_tolerance = 1e-9, row_tolerance = 1e-10;  // see WorldOptions
-  double smallest_fraction = 1.0 / 1024;
+  double smallest_fraction = 1.0 / 64;
 };
 
 // A named material point: results are interpolated in the cell that holds it at rest.

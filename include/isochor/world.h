@@ -75,7 +75,7 @@ struct WorldOptions {
   double force_tolerance = 1e-9;  // unbalanced force, relative to the forces that cancel
   double row_tolerance = 1e-10;   // relative volume (or other measure) error of a row
   // Adaptive increments of advance(): smallest fraction of the increment asked for.
-  double smallest_fraction = 1.0 / 256;
+  double smallest_fraction = 1.0 / 64;
   Vec3 gravity{};  // [m/s^2]; scaled by gravity_curve
   Curve gravity_curve = Curve::constant(1);
   std::function<void(const std::string&)> log;  // warnings; may be empty

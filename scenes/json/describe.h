@@ -145,7 +145,7 @@ void describe(Io& io, AnalysisDef& a) {
   io.integer("max_iterations", a.max_iterations, 60);
   io.number("force_tolerance", a.force_tolerance, 1e-9);
   io.number("row_tolerance", a.row_tolerance, 1e-10);
-  io.number("smallest_fraction", a.smallest_fraction, 1.0 / 1024);
+  io.number("smallest_fraction", a.smallest_fraction, 1.0 / 64);
 }
 
 template <class Io>

@@ -75,6 +75,20 @@ TEST_CASE("an iteration limit of one is rejected") {
   check_rejected(beam, 0.1, 0.8);
 }
 
+TEST_CASE("a rejected step gives back what the host had asked for") {
+  WorldOptions options = static_options();
+  options.max_iterations = 1;
+  Beam beam(options, Curve::constant(0), 5000);
+  REQUIRE(beam.world.step(0.1).status == StepStatus::converged);
+  REQUIRE(beam.world.set_amount(beam.end, 1).ok());
+  const auto before = beam.world.save();
+  CHECK(beam.world.step(0.1).status == StepStatus::rejected);
+  CHECK(beam.world.save() == before);
+  // A smaller request is met in its place.
+  REQUIRE(beam.world.set_amount(beam.end, 1e-7).ok());
+  CHECK(beam.world.step(0.1).status == StepStatus::converged);
+}
+
 TEST_CASE("an absurd load is rejected or carried, never half of it") {
   for (const bool dynamic : {true, false}) {
     for (const double load : {1e8, 1e14, 1e200, 1e308}) {
