@@ -168,7 +168,7 @@ int main(int argc, char** argv) {
   for (const Element e : {Element::tet4, Element::tet4_edge_smoothed}) bench_static(e, threads, quick);
   for (const Element e : {Element::tet4, Element::tet4_edge_smoothed}) {
     bench_robot(meshes + "/finger_small.msh", e, threads, quick ? 10 : 60);
-    if (!quick) bench_robot(meshes + "/finger_large.msh", e, threads, 12);
+    if (!quick) bench_robot(meshes + "/finger_large.msh", e, threads, 60);
   }
   return 0;
 }

@@ -20,7 +20,7 @@ TEST_CASE("edge-smoothed cantilever meets the reference at 4,000 unknowns") {
 }
 
 TEST_CASE("edge-smoothed cantilever on an unstructured mesh") {
-  // Measured by the authors' prototype on a mesh of this size: -0.470 of -0.4763.
+  // Unstructured tets of this size come within 1.5 % under a tenth of the load.
   Cantilever c(scene_mesh("cantilever_2"), Element::tet4_edge_smoothed, 0.5, 0.98);
   c.one_step();
   CHECK(std::abs(c.tip().y - kTipTenth.y) < 0.015 * std::abs(kTipTenth.y));
