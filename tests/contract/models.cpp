@@ -94,25 +94,27 @@ TEST_CASE("bad constants are refused with name, value and remedy") {
       c.poisson = nu;
       return c;
     };
-    using Catch::Matchers::Contains;
-    CHECK_THAT(message(model, young(1e5, 0.6)), Contains("0.6") && Contains("0.5") && Contains(model.name));
-    CHECK_THAT(message(model, young(1e5, nan)), Contains("nan") && Contains("poisson"));
-    CHECK_THAT(message(model, young(-3, 0.3)), Contains("-3") && Contains("young") && Contains("positive"));
-    CHECK_THAT(message(model, young(0, 0.3)), Contains("young") && Contains("positive"));
-    CHECK_THAT(message(model, young(nan, 0.3)), Contains("young") && Contains("positive"));
-    CHECK_THAT(message(model, young(std::numeric_limits<double>::infinity(), 0.3)), Contains("young"));
+    CHECK_THAT(message(model, young(1e5, 0.6)),
+               ContainsSubstring("0.6") && ContainsSubstring("0.5") && ContainsSubstring(model.name));
+    CHECK_THAT(message(model, young(1e5, nan)), ContainsSubstring("nan") && ContainsSubstring("poisson"));
+    CHECK_THAT(message(model, young(-3, 0.3)),
+               ContainsSubstring("-3") && ContainsSubstring("young") && ContainsSubstring("positive"));
+    CHECK_THAT(message(model, young(0, 0.3)), ContainsSubstring("young") && ContainsSubstring("positive"));
+    CHECK_THAT(message(model, young(nan, 0.3)), ContainsSubstring("young") && ContainsSubstring("positive"));
+    CHECK_THAT(message(model, young(std::numeric_limits<double>::infinity(), 0.3)),
+               ContainsSubstring("young"));
     ElasticConstants both = young(1e5, 0.3);
     both.mu = 3;
-    CHECK_THAT(message(model, both), Contains("one pair"));
+    CHECK_THAT(message(model, both), ContainsSubstring("one pair"));
     ElasticConstants alone;
     alone.mu = 3;
-    CHECK_THAT(message(model, alone), Contains("exactly one of lambda and bulk"));
+    CHECK_THAT(message(model, alone), ContainsSubstring("exactly one of lambda and bulk"));
     alone.bulk = -2;
-    CHECK_THAT(message(model, alone), Contains("-2") && Contains("positive"));
+    CHECK_THAT(message(model, alone), ContainsSubstring("-2") && ContainsSubstring("positive"));
     alone.bulk = nan;
-    CHECK_THAT(message(model, alone), Contains("not a number"));
+    CHECK_THAT(message(model, alone), ContainsSubstring("not a number"));
     alone.bulk = 1;
     alone.mu = nan;
-    CHECK_THAT(message(model, alone), Contains("nan") && Contains("mu"));
+    CHECK_THAT(message(model, alone), ContainsSubstring("nan") && ContainsSubstring("mu"));
   }
 }

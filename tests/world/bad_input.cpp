@@ -5,7 +5,6 @@
 
 using namespace isochor;
 using namespace test;
-using Catch::Matchers::Contains;
 
 namespace {
 
@@ -43,14 +42,15 @@ struct Draft {
 TEST_CASE("statics refuses a body that nothing holds, dynamics does not") {
   Draft loose;
   add_volume(loose.world, loose.body);
-  CHECK_THAT(loose.compiled(), Contains("\"body\"") && Contains("nothing holds") &&
-                                   Contains("translation along x") && Contains("rotation") &&
-                                   Contains("dirichlet"));
+  CHECK_THAT(loose.compiled(), ContainsSubstring("\"body\"") && ContainsSubstring("nothing holds") &&
+                                   ContainsSubstring("translation along x") &&
+                                   ContainsSubstring("rotation") && ContainsSubstring("dirichlet"));
   CHECK(loose.world.step(1).status == StepStatus::invalid);
   Draft sliding;
   add_volume(sliding.world, sliding.body);
   hold(sliding.world, sliding.body, {"x0"}, {{1, 0, 0}});
-  CHECK_THAT(sliding.compiled(), Contains("translation along y") && !Contains("translation along x"));
+  CHECK_THAT(sliding.compiled(),
+             ContainsSubstring("translation along y") && !ContainsSubstring("translation along x"));
   Draft moving(0.5, Element::tet4, dynamic_options());
   add_volume(moving.world, moving.body);
   CHECK(moving.compiled() == "accepted");
@@ -60,34 +60,36 @@ TEST_CASE("names that do not exist are answered with those that do") {
   Draft d;
   add_volume(d.world, d.body);
   hold(d.world, d.body, {"ceiling"});
-  CHECK_THAT(d.compiled(), Contains("ceiling") && Contains("surface") && Contains("\"x0\"") &&
-                               Contains("\"z1\"") && Contains("hold"));
+  CHECK_THAT(d.compiled(), ContainsSubstring("ceiling") && ContainsSubstring("surface") &&
+                               ContainsSubstring("\"x0\"") && ContainsSubstring("\"z1\"") &&
+                               ContainsSubstring("hold"));
   Draft region;
   VolumeDef v;
   v.regions = {"heart"};
   value(region.world.add(isochor::volume(v)));
-  CHECK_THAT(region.compiled(), Contains("heart") && Contains("region") && Contains("\"body\""));
+  CHECK_THAT(region.compiled(),
+             ContainsSubstring("heart") && ContainsSubstring("region") && ContainsSubstring("\"body\""));
   Draft node_set;
   DirichletDef s;
   s.where.node_sets = {"rim"};
   value(node_set.world.add(dirichlet(s)));
   add_volume(node_set.world, node_set.body);
-  CHECK_THAT(node_set.compiled(), Contains("rim") && Contains("node set"));
+  CHECK_THAT(node_set.compiled(), ContainsSubstring("rim") && ContainsSubstring("node set"));
   Draft node;
   DirichletDef n;
   n.where.nodes = {4711};
   value(node.world.add(dirichlet(n)));
   add_volume(node.world, node.body);
-  CHECK_THAT(node.compiled(), Contains("4711") && Contains("0 to 26"));
+  CHECK_THAT(node.compiled(), ContainsSubstring("4711") && ContainsSubstring("0 to 26"));
   Draft nobody;
   VolumeDef elsewhere;
   elsewhere.body = BodyId{7};
   value(nobody.world.add(isochor::volume(elsewhere)));
-  CHECK_THAT(nobody.compiled(), Contains("no body number 7"));
+  CHECK_THAT(nobody.compiled(), ContainsSubstring("no body number 7"));
   Draft nothing;
   value(nothing.world.add(dirichlet({})));
   add_volume(nothing.world, nothing.body);
-  CHECK_THAT(nothing.compiled(), Contains("no nodes"));
+  CHECK_THAT(nothing.compiled(), ContainsSubstring("no nodes"));
 }
 
 TEST_CASE("materials of regions are checked") {
@@ -95,18 +97,19 @@ TEST_CASE("materials of regions are checked") {
   BodyDef def;
   def.mesh = divided(box({2, 1, 1}), 0.5);
   def.materials = {{"low", neo_hookean(1, 0.3), 1000}};
-  CHECK_THAT(refusal(world.add_body(def)), Contains("high") && Contains("no material"));
+  CHECK_THAT(refusal(world.add_body(def)), ContainsSubstring("high") && ContainsSubstring("no material"));
   def.materials = {{"", neo_hookean(1, 0.3), 1000}, {"middle", neo_hookean(1, 0.3), 1000}};
-  CHECK_THAT(refusal(world.add_body(def)), Contains("middle") && Contains("\"low\"") && Contains("\"high\""));
+  CHECK_THAT(refusal(world.add_body(def)),
+             ContainsSubstring("middle") && ContainsSubstring("\"low\"") && ContainsSubstring("\"high\""));
   def.materials = {{"", nullptr, 1000}};
-  CHECK_THAT(refusal(world.add_body(def)), Contains("material is empty"));
+  CHECK_THAT(refusal(world.add_body(def)), ContainsSubstring("material is empty"));
   for (const double density : {0.0, -5.0, std::nan("")}) {
     def.materials = {{"", neo_hookean(1, 0.3), density}};
-    CHECK_THAT(refusal(world.add_body(def)), Contains("density") && Contains("positive"));
+    CHECK_THAT(refusal(world.add_body(def)), ContainsSubstring("density") && ContainsSubstring("positive"));
   }
   def.materials = {{"", neo_hookean(1, 0.3), 1000}};
   CHECK(world.add_body(def).ok());
-  CHECK_THAT(refusal(world.add_body(def)), Contains("another body has this name"));
+  CHECK_THAT(refusal(world.add_body(def)), ContainsSubstring("another body has this name"));
 }
 
 TEST_CASE("meshes are checked") {
@@ -116,7 +119,7 @@ TEST_CASE("meshes are checked") {
   def.mesh = box({1, 1, 1});
   std::swap(def.mesh.cells[0], def.mesh.cells[1]);
   const std::string inverted = refusal(world.add_body(def));
-  CHECK_THAT(inverted, Contains("body \"body\"") && Contains("invert"));
+  CHECK_THAT(inverted, ContainsSubstring("body \"body\"") && ContainsSubstring("invert"));
   def.mesh = box({1, 1, 1});
   def.mesh.nodes[static_cast<std::size_t>(def.mesh.cells[3])] =
       def.mesh.nodes[static_cast<std::size_t>(def.mesh.cells[2])];
@@ -131,39 +134,42 @@ TEST_CASE("meshes are checked") {
   CHECK(refusal(world.add_body(def)) != "accepted");
   def.mesh = box({1, 1, 1}, {1, 1, 1}, CellType::tet10);
   def.element = Element::tet4;
-  CHECK_THAT(refusal(world.add_body(def)), Contains("Tet10") && Contains("tet10"));
+  CHECK_THAT(refusal(world.add_body(def)), ContainsSubstring("Tet10") && ContainsSubstring("tet10"));
 }
 
 TEST_CASE("nu = 0.5 without rows is refused with the remedy") {
   Draft d(0.5);
   hold(d.world, d.body, {"x0"});
-  CHECK_THAT(d.compiled(),
-             Contains("\"body\"") && Contains("0.5") && Contains("one-field") && Contains("volume rows"));
+  CHECK_THAT(d.compiled(), ContainsSubstring("\"body\"") && ContainsSubstring("0.5") &&
+                               ContainsSubstring("one-field") && ContainsSubstring("volume rows"));
 }
 
 TEST_CASE("hard rows that lock, repeat or contradict each other are named") {
   Draft per_element(0.5, Element::tet4, static_options(), box({3, 3, 3}));
   CHECK(per_element.add_volume_rows(VolumeSpace::element, true, "incompressible") == "accepted");
   hold(per_element.world, per_element.body, {"x0"});
-  CHECK_THAT(per_element.compiled(), Contains("162") && Contains("incompressible") &&
-                                         Contains("free displacements") && Contains("rows per node"));
+  CHECK_THAT(per_element.compiled(), ContainsSubstring("162") && ContainsSubstring("incompressible") &&
+                                         ContainsSubstring("free displacements") &&
+                                         ContainsSubstring("rows per node"));
 
   Draft twice(0.5);
   CHECK(twice.add_volume_rows(VolumeSpace::node, true, "nodal") == "accepted");
   CHECK(twice.add_volume_rows(VolumeSpace::body, false, "whole") == "accepted");
   hold(twice.world, twice.body, {"x0"});
-  CHECK_THAT(twice.compiled(), Contains("nodal") && Contains("whole") && Contains("drop one"));
+  CHECK_THAT(twice.compiled(),
+             ContainsSubstring("nodal") && ContainsSubstring("whole") && ContainsSubstring("drop one"));
 
   Draft bulk_twice(0.4);
   CHECK(bulk_twice.add_volume_rows(VolumeSpace::node, true, "first") == "accepted");
   CHECK(bulk_twice.add_volume_rows(VolumeSpace::body, true, "second") == "accepted");
   hold(bulk_twice.world, bulk_twice.body, {"x0"});
-  CHECK_THAT(bulk_twice.compiled(), Contains("second") && Contains("carries_bulk"));
+  CHECK_THAT(bulk_twice.compiled(), ContainsSubstring("second") && ContainsSubstring("carries_bulk"));
 
   Draft enclosed(0.5);
   add_volume(enclosed.world, enclosed.body);
   hold(enclosed.world, enclosed.body, {"x0", "x1", "y0", "y1", "z0", "z1"});
-  CHECK_THAT(enclosed.compiled(), Contains("\"body\"") && Contains("enclosed") && Contains("nu < 0.5"));
+  CHECK_THAT(enclosed.compiled(),
+             ContainsSubstring("\"body\"") && ContainsSubstring("enclosed") && ContainsSubstring("nu < 0.5"));
 }
 
 TEST_CASE("supports that contradict each other are named") {
@@ -171,8 +177,8 @@ TEST_CASE("supports that contradict each other are named") {
   add_volume(d.world, d.body);
   hold(d.world, d.body, {"x0"});
   hold(d.world, d.body, {"y0"}, {}, {0, 0, 0.1});
-  CHECK_THAT(d.compiled(),
-             Contains("hold y0") && Contains("hold x0") && Contains("node") && Contains("disjoint"));
+  CHECK_THAT(d.compiled(), ContainsSubstring("hold y0") && ContainsSubstring("hold x0") &&
+                               ContainsSubstring("node") && ContainsSubstring("disjoint"));
   // The same motion twice is no contradiction.
   Draft same;
   add_volume(same.world, same.body);
@@ -190,8 +196,8 @@ TEST_CASE("cavities are checked") {
   Draft open = draft(true);
   hold(open.world, open.body, {"z0"});
   value(open.world.add(cavity(def)));
-  CHECK_THAT(open.compiled(),
-             Contains("cavity") && Contains("opening") && Contains("node") && Contains("cap_free_openings"));
+  CHECK_THAT(open.compiled(), ContainsSubstring("cavity") && ContainsSubstring("opening") &&
+                                  ContainsSubstring("node") && ContainsSubstring("cap_free_openings"));
   Draft closed = draft(false);
   hold(closed.world, closed.body, {"z0"});
   value(closed.world.add(cavity(def)));
@@ -201,15 +207,15 @@ TEST_CASE("cavities are checked") {
   outside.surfaces = {"hull"};
   hold(wrong.world, wrong.body, {"z0"});
   value(wrong.world.add(cavity(outside)));
-  CHECK_THAT(wrong.compiled(), Contains("hull") && Contains("\"chamber\""));
+  CHECK_THAT(wrong.compiled(), ContainsSubstring("hull") && ContainsSubstring("\"chamber\""));
   Draft none = draft(false);
   CavityDef unnamed;
-  CHECK_THAT(refusal(none.world.add(cavity(unnamed))), Contains("no surface"));
+  CHECK_THAT(refusal(none.world.add(cavity(unnamed))), ContainsSubstring("no surface"));
   def.amount = Curve::constant(std::nan(""));
-  CHECK_THAT(refusal(none.world.add(cavity(def))), Contains("no number"));
+  CHECK_THAT(refusal(none.world.add(cavity(def))), ContainsSubstring("no number"));
   def.amount = Curve::constant(-2);
   def.control = CavityControl::volume;
-  CHECK_THAT(refusal(none.world.add(cavity(def))), Contains("-2") && Contains("positive"));
+  CHECK_THAT(refusal(none.world.add(cavity(def))), ContainsSubstring("-2") && ContainsSubstring("positive"));
 }
 
 TEST_CASE("loads and supports are checked") {
@@ -218,43 +224,45 @@ TEST_CASE("loads and supports are checked") {
   TractionDef both;
   both.traction = {1, 0, 0};
   both.total_force = {1, 0, 0};
-  CHECK_THAT(refusal(d.world.add(traction(both))), Contains("both") && Contains("give one"));
+  CHECK_THAT(refusal(d.world.add(traction(both))),
+             ContainsSubstring("both") && ContainsSubstring("give one"));
   both.total_force = {nan, 0, 0};
-  CHECK_THAT(refusal(d.world.add(traction(both))), Contains("finite"));
+  CHECK_THAT(refusal(d.world.add(traction(both))), ContainsSubstring("finite"));
   PointForceDef force;
   force.force = {0, nan, 0};
-  CHECK_THAT(refusal(d.world.add(point_force(force))), Contains("finite"));
+  CHECK_THAT(refusal(d.world.add(point_force(force))), ContainsSubstring("finite"));
   DirichletDef support;
   support.directions = {{0, 0, 0}};
-  CHECK_THAT(refusal(d.world.add(dirichlet(support))), Contains("no length"));
+  CHECK_THAT(refusal(d.world.add(dirichlet(support))), ContainsSubstring("no length"));
   support.directions = {};
   support.angle = 1;
-  CHECK_THAT(refusal(d.world.add(dirichlet(support))), Contains("axis"));
+  CHECK_THAT(refusal(d.world.add(dirichlet(support))), ContainsSubstring("axis"));
   support.angle = nan;
-  CHECK_THAT(refusal(d.world.add(dirichlet(support))), Contains("finite"));
+  CHECK_THAT(refusal(d.world.add(dirichlet(support))), ContainsSubstring("finite"));
   VolumeDef rows;
   rows.stabilization = -1;
-  CHECK_THAT(refusal(d.world.add(isochor::volume(rows))), Contains("stabilization") && Contains("-1"));
-  CHECK_THAT(refusal(d.world.add(nullptr)), Contains("empty effect"));
+  CHECK_THAT(refusal(d.world.add(isochor::volume(rows))),
+             ContainsSubstring("stabilization") && ContainsSubstring("-1"));
+  CHECK_THAT(refusal(d.world.add(nullptr)), ContainsSubstring("empty effect"));
 }
 
 TEST_CASE("a world is checked") {
-  CHECK_THAT(refusal(World::create(static_options(), kWorldAbi + 1)), Contains("rebuild"));
-  CHECK_THAT(refusal(World::create({})), Contains("scheme"));
+  CHECK_THAT(refusal(World::create(static_options(), kWorldAbi + 1)), ContainsSubstring("rebuild"));
+  CHECK_THAT(refusal(World::create({})), ContainsSubstring("scheme"));
   WorldOptions options = static_options();
   options.force_tolerance = 0;
-  CHECK_THAT(refusal(World::create(options)), Contains("tolerances"));
+  CHECK_THAT(refusal(World::create(options)), ContainsSubstring("tolerances"));
   options = static_options();
   options.max_iterations = 0;
-  CHECK_THAT(refusal(World::create(options)), Contains("max_iterations"));
+  CHECK_THAT(refusal(World::create(options)), ContainsSubstring("max_iterations"));
   options = static_options();
   options.threads = -1;
-  CHECK_THAT(refusal(World::create(options)), Contains("threads = -1"));
+  CHECK_THAT(refusal(World::create(options)), ContainsSubstring("threads = -1"));
   options = static_options();
   options.gravity.y = std::nan("");
-  CHECK_THAT(refusal(World::create(options)), Contains("gravity"));
+  CHECK_THAT(refusal(World::create(options)), ContainsSubstring("gravity"));
   World empty = make_world(static_options());
-  CHECK_THAT(refusal(empty.compile()), Contains("no body"));
+  CHECK_THAT(refusal(empty.compile()), ContainsSubstring("no body"));
   CHECK(empty.step(1).status == StepStatus::invalid);
 }
 
@@ -263,12 +271,14 @@ TEST_CASE("after the first step nothing can be added, and amounts are checked") 
   add_volume(d.world, d.body);
   hold(d.world, d.body, {"x0"});
   REQUIRE(d.world.step(1).status == StepStatus::converged);
-  CHECK_THAT(refusal(d.world.add(isochor::volume({}))), Contains("before the first step"));
+  CHECK_THAT(refusal(d.world.add(isochor::volume({}))), ContainsSubstring("before the first step"));
   BodyDef late;
   late.name = "late";
-  CHECK_THAT(refusal(d.world.add_body(late)), Contains("late") && Contains("before the first step"));
-  CHECK_THAT(refusal(d.world.set_amount(EffectId{9}, 1)), Contains("no effect number 9"));
-  CHECK_THAT(refusal(d.world.set_amount(EffectId{0}, 1)), Contains("no amount"));
-  CHECK_THAT(refusal(d.world.set_amount(EffectId{1}, std::nan(""))), Contains("finite"));
-  CHECK_THAT(refusal(d.world.set_amount(static_cast<EffectId>(-1), 1)), Contains("no effect number -1"));
+  CHECK_THAT(refusal(d.world.add_body(late)),
+             ContainsSubstring("late") && ContainsSubstring("before the first step"));
+  CHECK_THAT(refusal(d.world.set_amount(EffectId{9}, 1)), ContainsSubstring("no effect number 9"));
+  CHECK_THAT(refusal(d.world.set_amount(EffectId{0}, 1)), ContainsSubstring("no amount"));
+  CHECK_THAT(refusal(d.world.set_amount(EffectId{1}, std::nan(""))), ContainsSubstring("finite"));
+  CHECK_THAT(refusal(d.world.set_amount(static_cast<EffectId>(-1), 1)),
+             ContainsSubstring("no effect number -1"));
 }

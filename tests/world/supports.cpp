@@ -1,0 +1,78 @@
+// Prescribed motions: oblique directions, several effects on one node, rotations.
+#include <cmath>
+
+#include "support/worlds.h"
+
+using namespace isochor;
+using namespace test;
+
+namespace {
+
+struct Block {
+  World world = make_world(static_options());
+  BodyId body = add_body(world, box({2, 2, 2}), Element::tet4, neo_hookean(1e5, 0.4));
+
+  EffectId move(const std::string& name, const Vec3& node, std::vector<Vec3> directions,
+                const Vec3& displacement) {
+    DirichletDef def;
+    def.name = name;
+    def.where.nearest = {node};
+    def.directions = std::move(directions);
+    def.displacement = displacement;
+    def.amount = Curve::ramp(1);
+    return value(world.add(dirichlet(def)));
+  }
+};
+
+}  // namespace
+
+TEST_CASE("oblique directions move as told and leave the rest free") {
+  const Vec3 first{1, 1, 0}, second{1, 0, 0.5}, told{0.06, -0.02, 0.04};
+  Block b;
+  add_volume(b.world, b.body);
+  hold(b.world, b.body, {"x0"});
+  b.move("both", {1, 1, 1}, {first, second}, told);
+  must_advance(b.world);
+  const Vec3 u = displacement_at(b.world, b.body, {1, 1, 1});
+  CHECK(dot(u, first) == Approx(dot(told, first)).epsilon(1e-9));
+  CHECK(dot(u, second) == Approx(dot(told, second)).epsilon(1e-9));
+  // The third direction is not given: nothing pulls there.
+  const Vec3 free = cross(first, second);
+  CHECK(std::abs(dot(u, free) - dot(told, free)) > 1e-3);
+}
+
+TEST_CASE("two effects may share a node in different directions") {
+  const Vec3 first{1, 1, 0}, second{0, 1, 0};
+  Block b;
+  add_volume(b.world, b.body);
+  hold(b.world, b.body, {"x0"});
+  const EffectId one = b.move("one", {1, 1, 1}, {first}, {0.05, 0.05, 0});
+  b.move("two", {1, 1, 1}, {second}, {0, -0.03, 0});
+  must_advance(b.world);
+  const Vec3 u = displacement_at(b.world, b.body, {1, 1, 1});
+  CHECK(dot(u, first) == Approx(0.1).epsilon(1e-9));
+  CHECK(u.y == Approx(-0.03).epsilon(1e-9));
+  CHECK(std::abs(b.world.reaction(one)[0].x) > 1);
+}
+
+TEST_CASE("a rotation is a rotation at every amount") {
+  Block b;
+  add_volume(b.world, b.body);
+  hold(b.world, b.body, {"x0"});
+  DirichletDef turn;
+  turn.where.surfaces = {"x1"};
+  turn.axis_point = {0, 0.5, 0.5};
+  turn.axis = {2, 0, 0};
+  turn.angle = 0.8;
+  turn.displacement = {0.1, 0, 0};
+  turn.amount = Curve::ramp(1);
+  value(b.world.add(dirichlet(turn)));
+  for (const double amount : {0.5, 1.0}) {
+    must_advance(b.world, 0.5);
+    const double angle = 0.8 * amount, y = 0.5, z = 0.5;  // the corner (1, 1, 1) seen from the axis
+    const Vec3 u = displacement_at(b.world, b.body, {1, 1, 1});
+    CHECK(u.x == Approx(0.1 * amount).epsilon(1e-9));
+    CHECK(u.y == Approx(std::cos(angle) * y - std::sin(angle) * z - y).epsilon(1e-9));
+    CHECK(u.z == Approx(std::sin(angle) * y + std::cos(angle) * z - z).epsilon(1e-9));
+  }
+}
