@@ -262,7 +262,7 @@ void EnclosedVolumePool::evaluate(const StencilRequest& request, const StencilSl
       }
     }
     for (std::size_t a = 0; a < n; ++a) slots.gradient[first + a] = sigma * slots.jacobian[first + a];
-    if (block && request.definiteness == Definiteness::projected) project_blocks(n, block);
+    if (block && request.definiteness != Definiteness::exact) project_blocks(n, block);
   }
 }
 

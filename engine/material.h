@@ -1,11 +1,9 @@
 // A hyperelastic energy density, evaluated for several deformation gradients at once.
 #pragma once
 
-#include "engine/base.h"
+#include "engine/spectrum.h"
 
 namespace isochor {
-
-inline constexpr int kLanes = 8;  // deformation gradients per batch
 
 // Structure of arrays: component first, lane second. F is row-major, F[3 i + j] = dx_i/dX_j.
 struct alignas(64) PointBatch {
@@ -26,6 +24,16 @@ class Material {
   virtual std::string_view name() const = 0;
   // Exact derivatives up to `want`, all lanes. psi is +infinity where the energy has no value.
   virtual void evaluate(Want want, const PointBatch& points, ResponseBatch& response) const = 0;
+
+  // A once more, as the sum of two parts that can be made definite:
+  // the isotropic part in closed form in the frame of F (all zero where a lane has no value) ...
+  virtual void spectrum(const PointBatch& points, const Svd3& svd, Spectrum& out) const = 0;
+  // ... and what is not isotropic (fibers), added to response.A and made definite by the material itself.
+  virtual void add_anisotropic(Definiteness policy, const PointBatch& points, ResponseBatch& response) const {
+    (void)policy;
+    (void)points;
+    (void)response;
+  }
 };
 
 }  // namespace isochor

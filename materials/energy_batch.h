@@ -68,6 +68,20 @@ class InvariantMaterial final : public Material {
     add_volume_hessian(points, dJ, r);
   }
 
+  void spectrum(const PointBatch&, const Svd3& svd, Spectrum& out) const override {
+    InvariantHessian gamma;
+    for (int l = 0; l < kLanes; ++l) {
+      const double a = svd.sigma[0][l], b = svd.sigma[1][l], c = svd.sigma[2][l];
+      const InvariantResponse e = energy_(a * a + b * b + c * c, a * b * c);
+      gamma.I[l] = 2 * e.I;
+      gamma.F[l] = 4 * e.II;
+      gamma.G[l] = e.JJ;
+      gamma.H[l] = e.J;
+      gamma.FG[l] = 2 * e.IJ;
+    }
+    set_invariant(svd, gamma, out);
+  }
+
   const Energy& energy() const { return energy_; }
 
  private:

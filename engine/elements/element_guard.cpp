@@ -63,4 +63,17 @@ void ElementGuard::evaluate(Want want, const PointBatch& points, ResponseBatch& 
   }
 }
 
+void ElementGuard::spectrum(const PointBatch&, const Svd3& svd, Spectrum& out) const {
+  Lanes first = {}, second = {};
+  for (int l = 0; l < kLanes; ++l) {
+    const double J = svd.sigma[0][l] * svd.sigma[1][l] * svd.sigma[2][l];
+    if (!(J > 0) || J >= threshold_) continue;
+    const double q = std::log(J / threshold_);
+    first[l] = -3 * b_ * q * q / J;
+    second[l] = -3 * b_ * (2 * q - q * q) / (J * J);
+  }
+  out = {};
+  add_volume(svd, second, first, out);
+}
+
 }  // namespace isochor

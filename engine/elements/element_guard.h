@@ -16,6 +16,7 @@ class ElementGuard final : public Material {
   ElementGuard(double stiffness, double threshold) : b_(stiffness), threshold_(threshold) {}
   std::string_view name() const override { return "element_guard"; }
   void evaluate(Want want, const PointBatch& points, ResponseBatch& response) const override;
+  void spectrum(const PointBatch& points, const Svd3& svd, Spectrum& out) const override;
 
  private:
   double b_, threshold_;

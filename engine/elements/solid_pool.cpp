@@ -1,6 +1,5 @@
 #include "engine/elements/solid_pool.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 namespace isochor {
@@ -47,26 +46,6 @@ void add_volume_hessian(const double F[9], double s, double A[45]) {
         }
       }
     }
-  }
-}
-
-// Raises negative eigenvalues of a packed symmetric 9x9 to zero.
-void project(double A[45]) {
-  using Mat9 = Eigen::Matrix<double, 9, 9>;
-  Mat9 full;
-  for (std::size_t i = 0; i < 9; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      full(static_cast<int>(i), static_cast<int>(j)) = A[packed(i, j)];
-      full(static_cast<int>(j), static_cast<int>(i)) = A[packed(i, j)];
-    }
-  }
-  if (!full.allFinite()) return;
-  const Eigen::SelfAdjointEigenSolver<Mat9> eigen(full);
-  if (eigen.eigenvalues()(0) >= 0) return;
-  const Mat9 fixed = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
-                     eigen.eigenvectors().transpose();
-  for (std::size_t i = 0; i < 9; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) A[packed(i, j)] = fixed(static_cast<int>(i), static_cast<int>(j));
   }
 }
 
@@ -156,27 +135,63 @@ void SolidPool::evaluate(const StencilRequest& request, const StencilSlots& slot
 
 void SolidPool::flush(const StencilRequest& request, const StencilSlots& slots, Lane* lanes,
                       int count) const {
+  const bool definite = request.want == Want::hessian && request.definiteness != Definiteness::exact;
+  PointBatch batch;
   ResponseBatch response;
-  if (material_) {
-    PointBatch batch;
+  if (material_ || definite) {
     for (int l = 0; l < kLanes; ++l) {
       const Lane& lane = lanes[std::min(l, count - 1)];
       for (int i = 0; i < 9; ++i) batch.F[i][l] = lane.F[i];
       batch.element[l] = lane.stencil;
     }
-    material_->evaluate(request.want, batch, response);
   }
+  if (material_) material_->evaluate(definite ? Want::gradient : request.want, batch, response);
+  if (definite) definite_hessian(request, lanes, count, batch, response);
   for (int l = 0; l < count; ++l) {
     double P[9] = {}, A[45] = {};
     const double psi = material_ ? response.psi[l] : 0;
     if (material_ && request.want != Want::value) {
       for (int i = 0; i < 9; ++i) P[i] = response.P[i][l];
-      if (request.want == Want::hessian) {
-        for (int i = 0; i < 45; ++i) A[i] = response.A[i][l];
-      }
+    }
+    if (definite || (material_ && request.want == Want::hessian)) {
+      for (int i = 0; i < 45; ++i) A[i] = response.A[i][l];
     }
     write(request, slots, lanes[l], psi, P, A);
   }
+}
+
+double SolidPool::strain_multiplier(const StencilRequest& request, const Lane& lane) const {
+  const std::size_t functions = static_cast<std::size_t>(data_.functions);
+  const double* N = data_.shape.data() + static_cast<std::size_t>(lane.point) * functions;
+  double sigma = 0;
+  for (std::size_t k = 0; k < functions; ++k) {
+    sigma += N[k] * request.function_multiplier[at(lane.stencil) * functions + k];
+  }
+  return sigma;
+}
+
+// The Hessian of energy and volume rows together, made definite as one: their sum is often definite where one
+// of them is not.
+void SolidPool::definite_hessian(const StencilRequest& request, const Lane* lanes, int count,
+                                 const PointBatch& batch, ResponseBatch& response) const {
+  Lanes F[9], A[45], G = {}, H = {};
+  for (int i = 0; i < 9; ++i) F[i] = load(batch.F[i]);
+  for (int l = 0; l < count && data_.functions > 0; ++l) {
+    const double sigma = strain_multiplier(request, lanes[l]);
+    if (sigma == 0) continue;
+    const VolumeResponse phi = volume_response(strain_, lanes[l].volume_strain);
+    G[l] = sigma * phi.second;
+    H[l] = sigma * phi.first;
+  }
+  Svd3 svd;
+  svd3(F, svd);
+  Spectrum spectrum = {};
+  if (material_) material_->spectrum(batch, svd, spectrum);
+  add_volume(svd, G, H, spectrum);
+  make_definite(request.definiteness, spectrum);
+  assemble(svd, spectrum, A);
+  for (int i = 0; i < 45; ++i) store(A[i], response.A[i]);
+  if (material_) material_->add_anisotropic(request.definiteness, batch, response);
 }
 
 namespace {
@@ -216,10 +231,8 @@ void SolidPool::write(const StencilRequest& request, const StencilSlots& slots, 
   double sigma = 0;  // multiplier of the volume strain at this point
   if (functions > 0) {
     phi = volume_response(strain_, lane.volume_strain);
-    for (std::size_t k = 0; k < functions; ++k) {
-      slots.value[at(s) * functions + k] += w * N[k] * phi.value;
-      if (request.want != Want::value) sigma += N[k] * request.function_multiplier[at(s) * functions + k];
-    }
+    for (std::size_t k = 0; k < functions; ++k) slots.value[at(s) * functions + k] += w * N[k] * phi.value;
+    if (request.want != Want::value) sigma = strain_multiplier(request, lane);
   }
   if (request.want == Want::value) return;
 
@@ -245,7 +258,8 @@ void SolidPool::write(const StencilRequest& request, const StencilSlots& slots, 
 
   double A[45];
   std::copy_n(A_material, 45, A);
-  if (sigma != 0) {
+  // A definite one holds the share of the volume rows already.
+  if (sigma != 0 && request.definiteness == Definiteness::exact) {
     add_volume_hessian(lane.F, sigma * phi.first, A);
     if (phi.second != 0) {
       for (std::size_t i = 0; i < 9; ++i) {
@@ -253,7 +267,6 @@ void SolidPool::write(const StencilRequest& request, const StencilSlots& slots, 
       }
     }
   }
-  if (request.definiteness == Definiteness::projected) project(A);
   contract(A, w, B, n, slots.hessian.data() + hessian_offset()[at(s)]);
 }
 

@@ -44,6 +44,10 @@ class SolidPool final : public StencilPool {
  private:
   struct Lane;
   void flush(const StencilRequest& request, const StencilSlots& slots, Lane* lanes, int count) const;
+  // Multiplier of the volume strain at a point: the multipliers of the functions, interpolated.
+  double strain_multiplier(const StencilRequest& request, const Lane& lane) const;
+  void definite_hessian(const StencilRequest& request, const Lane* lanes, int count, const PointBatch& batch,
+                        ResponseBatch& response) const;
   void write(const StencilRequest& request, const StencilSlots& slots, const Lane& lane, double psi,
              const double* P, const double* A) const;
 

@@ -200,13 +200,13 @@ TEST_CASE("undeformed pools pull nowhere and their rows are zero") {
   });
 }
 
-TEST_CASE("projected stencil Hessians have no negative eigenvalue") {
+TEST_CASE("definite stencil Hessians have no negative eigenvalue") {
   for_every_pool([](const PoolProbe& probe, const test::SceneCase&) {
     if (!probe.pool().has_energy()) return;
     auto crushed = probe.scene().x();
     for (Vec3& p : crushed) p = Vec3{0.9 * p.x, 1.3 * p.y, 0.8 * p.z};
     bool was_indefinite = false;
-    for (const auto definiteness : {Definiteness::exact, Definiteness::projected}) {
+    for (const auto definiteness : {Definiteness::exact, Definiteness::projected, Definiteness::absolute}) {
       const test::Slots s = probe.evaluate(Want::hessian, crushed, probe.multiplier(), definiteness);
       double lowest = 0, highest = 0;
       for (Index i = 0; i < probe.pool().stencils(); ++i) {

@@ -26,6 +26,8 @@ struct MaterialCase {
   double largest_J = 4;     // samples keep to J in (0, largest_J)
   bool inverted = false;    // has a value for J <= 0
   bool stress_free = true;  // P = 0 at F = 1
+  bool objective = true;    // does not see rotations in space
+  bool isotropic = true;    // does not see rotations of the material
 };
 std::vector<MaterialCase> material_cases();
 
