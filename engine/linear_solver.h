@@ -74,7 +74,7 @@ std::vector<SolverBackend> linear_solver_backends();
 
 // Threads of the BLAS under the solvers, for the whole process: how many there are decides the last bits of a
 // factor, so it is a setting of its own, never taken from the engine's thread count. The first solver made
-// sets it to 1 unless it was set before. False: the BLAS in this process offers no way to say it.
+// sets it to 2 unless it was set before. False: the BLAS in this process offers no way to say it.
 bool set_blas_threads(int threads);
 int blas_threads();  // 0: unknown
 

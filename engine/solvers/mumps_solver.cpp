@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <vector>
 
@@ -46,6 +47,7 @@ class MumpsSolver final : public DirectSolver {
   int infog(int i) const { return mumps_.infog[i - 1]; }
   void call(int job);
   void close();
+  void analyze_with(const Ordering& ordering);
   FactorReport failure(const char* stage) const;
 
   MumpsOptions options_;
@@ -123,28 +125,48 @@ FactorReport MumpsSolver::analyze_pattern() {
   cntl(1) = options_.pivot_threshold;
   cntl(3) = options_.singular_threshold;
 
-  // Without groups there is nothing that keeps a zero diagonal behind its neighbours; MUMPS has means of its
-  // own.
-  const bool own = options_.own_ordering >= 0 || p.group.empty();
-  if (own) {
-    icntl(7) = options_.own_ordering >= 0 ? options_.own_ordering : 7;
-    if (p.group.empty()) icntl(12) = 0;
-  } else {
-    const Ordering ordering = order_unknowns(p, options_.ordering);
-    position_.resize(at(p.size));
-    for (Index i = 0; i < p.size; ++i) position_[at(i)] = ordering.position[at(i)] + 1;
-    icntl(7) = 1;
-    mumps_.perm_in = position_.data();
-  }
   mumps_.n = p.size;
   mumps_.nnz = p.nonzeros();
   mumps_.irn = row_.data();
   mumps_.jcn = column_.data();
-  call(job_analyze);
+  // Without groups there is nothing that keeps a zero diagonal behind its neighbors; MUMPS has means of its
+  // own.
+  if (options_.own_ordering >= 0 || p.group.empty()) {
+    icntl(7) = options_.own_ordering >= 0 ? options_.own_ordering : 7;
+    if (p.group.empty()) icntl(12) = 0;
+    call(job_analyze);
+  } else if (options_.ordering != OrderingMethod::best) {
+    analyze_with(order_unknowns(p, options_.ordering));
+  } else {
+    Ordering best;
+    double fewest = std::numeric_limits<double>::infinity();
+    OrderingMethod last = OrderingMethod::as_given;
+    for (const auto method : {OrderingMethod::metis, OrderingMethod::amf, OrderingMethod::pord}) {
+      Ordering ordering = order_unknowns(p, method);
+      if (ordering.method != method) continue;
+      analyze_with(ordering);
+      if (infog(1) < 0) return failure("the analysis");
+      last = method;
+      if (mumps_.rinfog[0] < fewest) {
+        fewest = mumps_.rinfog[0];
+        best = std::move(ordering);
+      }
+    }
+    if (best.position.empty()) best = order_unknowns(p, OrderingMethod::amd);
+    if (best.method != last) analyze_with(best);
+  }
   if (infog(1) < 0) return failure("the analysis");
   FactorReport report;
   report.factor_nonzeros = infog(3) < 0 ? -std::int64_t{infog(3)} * 1000000 : infog(3);
   return report;
+}
+
+void MumpsSolver::analyze_with(const Ordering& ordering) {
+  position_.resize(ordering.position.size());
+  for (std::size_t i = 0; i < position_.size(); ++i) position_[i] = ordering.position[i] + 1;
+  icntl(7) = 1;
+  mumps_.perm_in = position_.data();
+  call(job_analyze);
 }
 
 FactorReport MumpsSolver::factor_values() {
@@ -187,6 +209,53 @@ std::unique_ptr<LinearSolver> make_mumps_solver(const MumpsOptions& options) {
   return std::make_unique<MumpsSolver>(options);
 }
 
+bool mumps_graph_ordering(std::span<const Index> start, std::span<const Index> neighbor,
+                          OrderingMethod method, std::vector<Index>& position) {
+  const Index n = static_cast<Index>(start.size()) - 1;
+  std::vector<MUMPS_INT> row, column;
+  for (Index i = 0; i < n; ++i) {
+    row.push_back(i + 1);
+    column.push_back(i + 1);
+    for (Index k = start[at(i)]; k < start[at(i) + 1]; ++k) {
+      if (neighbor[at(k)] <= i) continue;
+      row.push_back(neighbor[at(k)] + 1);
+      column.push_back(i + 1);
+    }
+  }
+  DMUMPS_STRUC_C graph{};
+  const std::lock_guard lock(mumps_mutex());
+  const auto run = [&](int job) {
+    graph.job = job;
+    dmumps_c(&graph);
+  };
+  graph.sym = 2;
+  graph.par = 1;
+  graph.comm_fortran = use_communicator_of_all;
+  run(job_start);
+  if (graph.infog[0] < 0) return false;
+  for (int i = 0; i < 4; ++i) graph.icntl[i] = 0;  // no printing
+  graph.icntl[5] = 0;                              // no column permutation
+  graph.icntl[6] = method == OrderingMethod::pord ? 4 : 2;
+  graph.icntl[11] = 1;  // no compression
+  graph.n = n;
+  graph.nnz = static_cast<MUMPS_INT8>(row.size());
+  graph.irn = row.data();
+  graph.jcn = column.data();
+  run(job_analyze);
+  bool ok = graph.infog[0] >= 0 && graph.sym_perm != nullptr;
+  if (ok) {
+    position.resize(at(n));
+    for (Index i = 0; i < n; ++i) position[at(i)] = graph.sym_perm[i] - 1;
+    std::vector<std::uint8_t> seen(at(n), 0);
+    for (const Index k : position) {
+      ok = ok && k >= 0 && k < n && !seen[at(k)];
+      if (ok) seen[at(k)] = 1;
+    }
+  }
+  run(job_end);
+  return ok;
+}
+
 std::string mumps_version() {
   return MUMPS_VERSION;
 }
@@ -199,6 +268,10 @@ namespace isochor {
 
 std::unique_ptr<LinearSolver> make_mumps_solver(const MumpsOptions&) {
   return nullptr;
+}
+bool mumps_graph_ordering(std::span<const Index>, std::span<const Index>, OrderingMethod,
+                          std::vector<Index>&) {
+  return false;
 }
 std::string mumps_version() {
   return {};

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "engine/linear_solver.h"
 #include "engine/solvers/ordering.h"
@@ -18,7 +20,8 @@ struct MumpsOptions {
   double singular_threshold = 1e-14;
   // The engine hands in scaled values, so MUMPS' own scaling is work without use.
   bool scaling = false;
-  // Of the quotient graph of the groups.
+  // Of the quotient graph of the groups. `best` tries the three that win somewhere (nested dissection twice,
+  // minimum fill) and keeps the one whose analysis promises the fewest operations.
   OrderingMethod ordering = OrderingMethod::best;
   // One of MUMPS' own orderings (its ICNTL(7)) instead of ours on the groups; -1: ours.
   int own_ordering = -1;
@@ -26,6 +29,10 @@ struct MumpsOptions {
 
 // Null when MUMPS is not part of this build.
 std::unique_ptr<LinearSolver> make_mumps_solver(const MumpsOptions& options = {});
+// Pivot positions of the vertices of a graph (both directions of every edge, no loops) by an ordering that
+// comes with MUMPS: pord or amf. False when it is not to be had.
+bool mumps_graph_ordering(std::span<const Index> start, std::span<const Index> neighbor,
+                          OrderingMethod method, std::vector<Index>& position);
 std::string mumps_version();  // empty when not built in
 
 }  // namespace isochor

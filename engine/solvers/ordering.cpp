@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "engine/base.h"
+#include "engine/solvers/mumps_solver.h"
 
 #ifdef ISOCHOR_HAVE_METIS
 #include <metis.h>
@@ -247,7 +248,7 @@ Ordering order_unknowns(const SymmetricPattern& pattern, OrderingMethod method) 
   std::vector<Index> own_group;
   std::span<const Index> group = pattern.group;
   Index groups = pattern.groups;
-  if (group.empty()) {
+  if (group.empty() || method == OrderingMethod::pord) {
     own_group.resize(at(n));
     std::iota(own_group.begin(), own_group.end(), 0);
     group = own_group;
@@ -260,9 +261,14 @@ Ordering order_unknowns(const SymmetricPattern& pattern, OrderingMethod method) 
   std::vector<Index> position(at(groups));
   std::iota(position.begin(), position.end(), 0);
   if (method != OrderingMethod::as_given && !graph.neighbour.empty()) {
+    const bool by_mumps = method == OrderingMethod::pord || method == OrderingMethod::amf;
+    if (by_mumps && mumps_graph_ordering(graph.start, graph.neighbour, method, position))
+      result.method = method;
 #ifdef ISOCHOR_HAVE_METIS
-    if (method != OrderingMethod::amd && metis_position(graph, position))
+    if (result.method == OrderingMethod::as_given && method != OrderingMethod::amd &&
+        metis_position(graph, position)) {
       result.method = OrderingMethod::metis;
+    }
 #endif
     if (result.method == OrderingMethod::as_given) {
       amd_position(graph, position);

@@ -11,6 +11,8 @@ namespace isochor {
 enum class OrderingMethod : std::uint8_t {
   best,      // METIS where it is built in, else minimum degree
   metis,     // nested dissection
+  pord,      // nested dissection with minimum fill at the ends (part of MUMPS), of unknowns, not groups
+  amf,       // approximate minimum fill (part of MUMPS)
   amd,       // approximate minimum degree
   as_given,  // by group, as the caller numbered them
 };
