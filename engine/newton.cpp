@@ -30,7 +30,8 @@ bool all_finite(const NewtonProblem& p) {
   return std::all_of(p.force.begin(), p.force.end(), finite) &&
          std::all_of(p.position.begin(), p.position.end(), finite) &&
          std::all_of(p.target.begin(), p.target.end(), ok) &&
-         std::all_of(p.prescribed.begin(), p.prescribed.end(), ok) && std::isfinite(p.mass_scale) &&
+         std::all_of(p.prescribed.begin(), p.prescribed.end(), ok) &&
+         std::all_of(p.memory.begin(), p.memory.end(), ok) && std::isfinite(p.mass_scale) &&
          (p.mass_scale == 0 || std::all_of(p.predicted.begin(), p.predicted.end(), finite));
 }
 
@@ -117,7 +118,80 @@ Newton::Newton(std::shared_ptr<const System> system, const Parallel& parallel,
   node_work_.resize(n);
   x_trial_.resize(n);
   reaction_.resize(n);
+  if (!s.laws().empty()) {
+    strain_.resize(m);
+    tangent_.resize(s.compliance().size());
+  }
+  if (s.has_bounds()) {
+    clamped_.assign(m, 0);
+    bound_.assign(m, 0);
+    to_bound_.assign(m, 0);
+  }
   calibrate();
+}
+
+// Strains of the rows with a law of their own, and their tangents where asked; returns their energy
+// lambda . c - U.
+double Newton::apply_laws(const NewtonProblem& p, std::span<const double> lambda, bool tangents) {
+  const System& s = *system_;
+  double energy = 0;
+  for (const auto& [index, entry] : s.laws()) {
+    const RowPool& pool = *s.parts().row_pools[at(index)];
+    const auto first = at(s.first_row(index)), rows = at(pool.rows());
+    const RowIncrement increment{
+        p.t0, p.t1, p.memory.subspan(at(s.first_memory(index)), static_cast<std::size_t>(pool.memory()))};
+    const auto l = lambda.subspan(first, rows);
+    const auto strain = std::span(strain_).subspan(first, rows);
+    energy -= pool.evaluate_law(
+        increment, l, strain,
+        tangents ? std::span(tangent_).subspan(entry, pool.compliance.size()) : std::span<double>());
+    for (std::size_t r = 0; r < rows; ++r) energy += l[r] * strain[r];
+  }
+  return energy;
+}
+
+void Newton::clamp(std::span<double> lambda) const {
+  const auto lower = system_->row_lower(), upper = system_->row_upper();
+  for (std::size_t r = 0; r < lower.size(); ++r) lambda[r] = std::clamp(lambda[r], lower[r], upper[r]);
+}
+
+// The active set of the primal-dual active-set method: a row whose multiplier would leave its bounds under
+// the force law lambda + theta / metric is held at the bound in this linear system (Hintermueller, Ito &
+// Kunisch 2002).
+void Newton::choose_clamped(std::span<const double> lambda) {
+  const System& s = *system_;
+  const auto lower = s.row_lower(), upper = s.row_upper();
+  any_clamped_ = false;
+  for (std::size_t r = 0; r < clamped_.size(); ++r) {
+    const double trial = lambda[r] + theta_[r] / s.row_metric()[r];
+    clamped_[r] = trial <= lower[r] || trial >= upper[r];
+    if (clamped_[r]) bound_[r] = trial <= lower[r] ? lower[r] : upper[r];
+    any_clamped_ = any_clamped_ || clamped_[r];
+  }
+}
+
+// Tangents of the laws replace the compliance of their rows; a row held at a bound is taken out of the
+// system, with a diagonal that keeps the inertia.
+void Newton::write_bounds_and_laws() {
+  const System& s = *system_;
+  for (const auto& [index, entry] : s.laws()) {
+    const std::size_t entries = s.parts().row_pools[at(index)]->compliance.size();
+    for (std::size_t k = entry; k < entry + entries; ++k) {
+      values_[static_cast<std::size_t>(s.compliance_place()[k])] -= tangent_[k];
+    }
+  }
+  if (!any_clamped_) return;
+  const SymmetricPattern& kkt = s.kkt();
+  const Index free = s.free_unknowns();
+  const auto held = [&](Index i) { return i >= free && clamped_[at(i - free)] != 0; };
+  for (Index c = 0; c < kkt.size; ++c) {
+    const auto to = static_cast<std::size_t>(kkt.column_start[at(c) + 1]);
+    for (auto k = static_cast<std::size_t>(kkt.column_start[at(c)]); k < to; ++k) {
+      const Index i = kkt.row[k];
+      if (!held(i) && !held(c)) continue;
+      values_[k] = i == c ? -s.row_metric()[at(i - free)] : 0;
+    }
+  }
 }
 
 // Stiffness of the nodes at rest: what forces are compared with. It depends on the scene alone, never on the
@@ -189,10 +263,18 @@ void Newton::assemble_residual(const NewtonProblem& p, std::span<const Vec3> x,
   assembly_.row_values(theta_);
   for (std::size_t r = 0; r < theta_.size(); ++r) theta_[r] -= p.target[r];
   add_compliance(s, -1, lambda, theta_);
+  if (!s.laws().empty()) {
+    law_energy_ = apply_laws(p, lambda, false);
+    for (const auto& law : s.laws()) {
+      const auto first = s.first_row(law.row_pool), rows = s.parts().row_pools[at(law.row_pool)]->rows();
+      for (Index r = first; r < first + rows; ++r) theta_[at(r)] -= strain_[at(r)];
+    }
+  }
   assembly_.prescribed_row_values(prescribed_phi_);
 }
 
-Newton::Residuals Newton::measure(const NewtonProblem& p, std::span<const Vec3> x) const {
+Newton::Residuals Newton::measure(const NewtonProblem& p, std::span<const Vec3> x,
+                                  std::span<const double> lambda) const {
   const System& s = *system_;
   double force = 0, reference = 0, row = 0, position = 0;
   const double floor = 1e-6 * s.length();
@@ -213,8 +295,18 @@ Newton::Residuals Newton::measure(const NewtonProblem& p, std::span<const Vec3> 
     const double size = std::max(magnitude_[at(i)], k * floor);
     reference += size * size / k;
   }
-  for (std::size_t r = 0; r < theta_.size(); ++r)
-    row = std::max(row, std::abs(theta_[r]) / s.row_measure()[r]);
+  if (s.has_bounds()) {
+    // What the projection leaves over: zero when the row is met, or when its multiplier sits at the bound
+    // that theta pushes it against.
+    for (std::size_t r = 0; r < theta_.size(); ++r) {
+      const double d = s.row_metric()[r];
+      const double projected = std::clamp(lambda[r] + theta_[r] / d, s.row_lower()[r], s.row_upper()[r]);
+      row = std::max(row, d * std::abs(projected - lambda[r]) / s.row_measure()[r]);
+    }
+  } else {
+    for (std::size_t r = 0; r < theta_.size(); ++r)
+      row = std::max(row, std::abs(theta_[r]) / s.row_measure()[r]);
+  }
   if (s.has_prescribers()) {
     for (Index i = 0; i < s.nodes(); ++i) {
       const Index b = s.basis_of()[at(i)];
@@ -230,8 +322,8 @@ Newton::Residuals Newton::measure(const NewtonProblem& p, std::span<const Vec3> 
 
 // Writes the residuals of the last evaluation into the report and says whether they are within tolerance.
 bool Newton::balanced(const NewtonProblem& p, const NewtonOptions& o, std::span<const Vec3> x,
-                      NewtonReport& report) const {
-  const Residuals r = measure(p, x);
+                      std::span<const double> lambda, NewtonReport& report) const {
+  const Residuals r = measure(p, x, lambda);
   report.force_residual = r.force;
   report.row_residual = r.row;
   return r.force <= o.force_tolerance && r.row <= o.row_tolerance && r.position <= o.position_tolerance;
@@ -287,6 +379,7 @@ bool Newton::factor_shifted(double mass_scale, double shift, NewtonReport& repor
   {
     const Stopwatch watch(seconds_.gather);
     assembly_.kkt_values(mass_scale, values_);
+    write_bounds_and_laws();
     const auto first = s.first_unknown();
     for (Index i = 0; i < s.nodes(); ++i) {
       double k = 0;
@@ -347,6 +440,11 @@ bool Newton::direction(std::span<const double> lambda, NewtonReport& report) {
     std::fill(node_work_.begin(), node_work_.end(), Vec3{});
     std::fill(row_work_.begin(), row_work_.end(), 0.0);
   }
+  if (any_clamped_) {
+    for (std::size_t r = 0; r < clamped_.size(); ++r) to_bound_[r] = clamped_[r] ? bound_[r] - lambda[r] : 0;
+    assembly_.constraint_force(to_bound_, reaction_);
+    for (std::size_t i = 0; i < reaction_.size(); ++i) node_work_[i] += reaction_[i];
+  }
   for (Index i = 0; i < s.nodes(); ++i) {
     Vec3 q = -(r_[at(i)] + node_work_[at(i)]);
     const Index b = s.basis_of()[at(i)];
@@ -356,6 +454,19 @@ bool Newton::direction(std::span<const double> lambda, NewtonReport& report) {
   const Index free = s.free_unknowns();
   for (Index r = 0; r < s.rows(); ++r) {
     rhs_[at(free + r)] = -scale_[at(free + r)] * (theta_[at(r)] + row_work_[at(r)]);
+  }
+  if (any_clamped_) {
+    // The multipliers that move to a bound are known: C dlambda_known joins the right-hand side of the other
+    // rows here, G^T dlambda_known did so above.
+    std::fill(row_work_.begin(), row_work_.end(), 0.0);
+    add_compliance(s, 1, to_bound_, row_work_);
+    for (Index r = 0; r < s.rows(); ++r) {
+      const double d = s.row_metric()[at(r)];
+      if (clamped_[at(r)])
+        rhs_[at(free + r)] = -scale_[at(free + r)] * d * to_bound_[at(r)];
+      else
+        rhs_[at(free + r)] += scale_[at(free + r)] * row_work_[at(r)];
+    }
   }
   SolveReport solved;
   {
@@ -383,8 +494,16 @@ double Newton::merit_slope(std::span<const double> lambda) {
   double q = 0, theta_norm = 0, gap_norm = 0;
   for (std::size_t i = 0; i < dx_.size(); ++i) q -= dot(dx_[i], r_[i]);
   for (std::size_t r = 0; r < theta_.size(); ++r) {
+    if (any_clamped_ && clamped_[r]) continue;
     q += theta_[r] * (lambda_new_[r] - lambda[r]);
     theta_norm += theta_[r] * theta_[r] / s.row_metric()[r];
+  }
+  if (any_clamped_) {
+    // Rows held at a bound do not head for theta = 0: the change of theta along the step is taken as it is.
+    assembly_.jacobian_times(dx_, row_work_);
+    for (std::size_t r = 0; r < theta_.size(); ++r) {
+      if (clamped_[r]) q -= row_work_[r] * to_bound_[r];
+    }
   }
   if (has_gap_) {
     // r + H dx + G^T dlambda + reaction = 0 at the given directions.
@@ -406,7 +525,16 @@ double Newton::merit_slope(std::span<const double> lambda) {
 double Newton::merit(const NewtonProblem& p, double tau, std::span<const double> lambda_trial) const {
   const System& s = *system_;
   double sum = potential(p, x_trial_) + compliance_energy(s, lambda_trial);
+  if (!s.laws().empty()) sum += law_energy_;
   for (std::size_t r = 0; r < theta_.size(); ++r) {
+    if (any_clamped_ && clamped_[r]) {
+      // max over multipliers within the bounds of multiplier * theta - its distance from the new estimate.
+      const double stiffness = gamma_ / s.row_metric()[r];
+      const double l = lambda_new_[r];
+      const double best = std::clamp(l + stiffness * theta_[r], s.row_lower()[r], s.row_upper()[r]);
+      sum += best * theta_[r] - 0.5 * (best - l) * (best - l) / stiffness;
+      continue;
+    }
     sum += lambda_new_[r] * theta_[r] + 0.5 * gamma_ * theta_[r] * theta_[r] / s.row_metric()[r];
   }
   if (has_gap_) {
@@ -441,7 +569,7 @@ bool Newton::search(const NewtonProblem& p, std::span<Vec3> x, std::span<double>
   std::copy(x.begin(), x.end(), x_trial_.begin());
   const double start = merit(p, 0, lambda);
   const double noise = 1e-12 * (potential_magnitude(p, x) + std::abs(start));
-  const Residuals before = measure(p, x);
+  const Residuals before = measure(p, x, lambda);
   double longest = 0;
   for (const Vec3& d : dx_) longest = std::max(longest, norm(d));
   double tau = longest > 100 * s.length() ? 100 * s.length() / longest : 1;
@@ -453,7 +581,7 @@ bool Newton::search(const NewtonProblem& p, std::span<Vec3> x, std::span<double>
       accepted = value <= start + 1e-4 * tau * slope;
       // Where the decrease drowns in rounding, the residual decides.
       if (!accepted && std::abs(tau * slope) < 10 * noise && value <= start + 10 * noise) {
-        const Residuals after = measure(p, x_trial_);
+        const Residuals after = measure(p, x_trial_, lambda_trial_);
         accepted = after.force <= before.force || after.force < 1e-7;
       }
       if (accepted) break;
@@ -476,10 +604,21 @@ bool Newton::search(const NewtonProblem& p, std::span<Vec3> x, std::span<double>
     tau = next;
   }
   std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
-  std::copy(lambda_trial_.begin(), lambda_trial_.end(), lambda.begin());
+  keep_multipliers(p, x, lambda);
   report.step = tau * longest;
   full_step_ = tau == 1;
   return true;
+}
+
+// Takes over the multipliers of the trial point, projected on their bounds. Those that the projection moved
+// change the forces, which are evaluated again.
+void Newton::keep_multipliers(const NewtonProblem& p, std::span<const Vec3> x, std::span<double> lambda) {
+  std::copy(lambda_trial_.begin(), lambda_trial_.end(), lambda.begin());
+  if (!system_->has_bounds()) return;
+  clamp(lambda);
+  if (std::equal(lambda.begin(), lambda.end(), lambda_trial_.begin())) return;
+  assembly_.evaluate(Want::gradient, Definiteness::exact, x, lambda, p.prescribed);
+  assemble_residual(p, x, lambda);
 }
 
 // Close to the solution the factors at hand are as good as new ones for a step or two: a few percent of the
@@ -494,12 +633,12 @@ bool Newton::correct(const NewtonProblem& p, const NewtonOptions& options, std::
     const double force = report.force_residual, row = report.row_residual;
     if (!std::isfinite(try_step(p, 1, x, lambda, report))) return false;
     ++report.corrections;
-    const bool done = balanced(p, options, x_trial_, report);
+    const bool done = balanced(p, options, x_trial_, lambda_trial_, report);
     const bool pays = report.force_residual <= std::max(worthwhile * force, options.force_tolerance) &&
                       report.row_residual <= std::max(worthwhile * row, options.row_tolerance);
     if (!pays) return false;
     std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
-    std::copy(lambda_trial_.begin(), lambda_trial_.end(), lambda.begin());
+    keep_multipliers(p, x, lambda);
     if (done) return true;
   }
   return false;
@@ -519,6 +658,8 @@ NewtonReport Newton::solve(const NewtonProblem& p, const NewtonOptions& options,
     stiffness_[i] = rest_stiffness_[i] + p.mass_scale * system_->parts().mass[i];
   }
   const System& s = *system_;
+  any_clamped_ = false;
+  clamp(lambda);
   const Vec3 origin = s.nodes() > 0 ? s.parts().rest[0] : Vec3{};
   for (int iteration = 0;; ++iteration) {
     {
@@ -533,14 +674,16 @@ NewtonReport Newton::solve(const NewtonProblem& p, const NewtonOptions& options,
       return fail(NewtonStatus::iteration_limit);
     }
     // A state that is already in balance stays to the last bit.
-    if (iteration == 0 && balanced(p, options, x, report)) return report;
+    if (iteration == 0 && balanced(p, options, x, lambda, report)) return report;
+    if (s.has_bounds()) choose_clamped(lambda);
+    if (!s.laws().empty()) apply_laws(p, lambda, true);
     if (!factor(p, x, lambda, report)) {
       return fail(report.status == NewtonStatus::converged ? NewtonStatus::singular : report.status);
     }
     if (!direction(lambda, report)) return fail(NewtonStatus::singular);
     ++report.iterations;
     if (!search(p, x, lambda, report)) return fail(NewtonStatus::line_search_failed);
-    const bool done = balanced(p, options, x, report);
+    const bool done = balanced(p, options, x, lambda, report);
     if (progress) progress(report.iterations, report.force_residual, report.row_residual);
     if (done || correct(p, options, x, lambda, report)) return report;
     for (const Vec3& xi : x) {

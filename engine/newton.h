@@ -40,6 +40,8 @@ struct NewtonProblem {
   std::span<const double> target;      // compliant rows
   std::span<const double> prescribed;  // multipliers of prescribed rows
   std::span<const Vec3> position;      // targets of given nodes, one for each System::free_bases() entry
+  double t0 = 0, t1 = 0;               // the increment, for rows with a law of their own
+  std::span<const double> memory;      // System::memory() numbers: what row pools keep between steps
 };
 
 enum class NewtonStatus : std::uint8_t {
@@ -102,10 +104,15 @@ class Newton {
   double potential(const NewtonProblem& p, std::span<const Vec3> x) const;
   double potential_magnitude(const NewtonProblem& p, std::span<const Vec3> x) const;
   void assemble_residual(const NewtonProblem& p, std::span<const Vec3> x, std::span<const double> lambda);
-  Residuals measure(const NewtonProblem& p, std::span<const Vec3> x) const;
+  Residuals measure(const NewtonProblem& p, std::span<const Vec3> x, std::span<const double> lambda) const;
   bool balanced(const NewtonProblem& p, const NewtonOptions& o, std::span<const Vec3> x,
-                NewtonReport& report) const;
+                std::span<const double> lambda, NewtonReport& report) const;
+  void keep_multipliers(const NewtonProblem& p, std::span<const Vec3> x, std::span<double> lambda);
   void calibrate();
+  double apply_laws(const NewtonProblem& p, std::span<const double> lambda, bool tangents);
+  void choose_clamped(std::span<const double> lambda);
+  void write_bounds_and_laws();
+  void clamp(std::span<double> lambda) const;
   bool correct(const NewtonProblem& p, const NewtonOptions& options, std::span<Vec3> x,
                std::span<double> lambda, NewtonReport& report);
   void position_gap(const NewtonProblem& p, std::span<const Vec3> x);
@@ -127,12 +134,18 @@ class Newton {
   std::int64_t factor_nonzeros_ = 0;
   int analyses_ = 0;
   bool analyzed_ = false, has_gap_ = false, full_step_ = false;
-  double shift_ = 0;    // the last one that mended the inertia in this solve
+  double shift_ = 0;       // the last one that mended the inertia in this solve
+  double law_energy_ = 0;  // of the rows with a law of their own, at the last residual
+  bool any_clamped_ = false;
   double gamma_ = 0.1;  // more would follow the volume too closely, less would lose descent; raised as needed
 
   std::vector<double> values_, scale_, rhs_, solution_, theta_, row_work_, stiffness_, magnitude_,
       rest_stiffness_;
   std::vector<double> lambda_new_, lambda_trial_, prescribed_phi_;
+  // Rows with laws: strain and tangent (one for each compliance entry). Rows with bounds: which of them the
+  // matrix holds at a bound, and by how much their multipliers move there.
+  std::vector<double> strain_, tangent_, bound_, to_bound_;
+  std::vector<std::uint8_t> clamped_;
   std::vector<Vec3> r_, dx_, gap_, node_work_, x_trial_, reaction_;
 };
 

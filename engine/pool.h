@@ -44,6 +44,9 @@ class StencilPool {
   virtual bool has_energy() const = 0;
   virtual int functions() const = 0;  // K >= 0
   virtual bool has_hessian() const { return true; }
+  // True when a rigid motion of all nodes changes its functions or its energy (a spring to a fixed point, a
+  // floor): such stencils may hold a body in statics.
+  virtual bool sees_rigid_motion() const { return false; }
   virtual void evaluate(const StencilRequest& request, const StencilSlots& slots) const = 0;
 
   // Offsets of each stencil's packed Hessian blocks, in blocks; filled by finish_topology().
@@ -77,6 +80,12 @@ struct ComplianceEntry {
   double value = 0;
 };
 
+// The increment of time that rows are evaluated for, and what the pool keeps between steps.
+struct RowIncrement {
+  double t0 = 0, t1 = 0;           // [s]; load factors in statics
+  std::span<const double> memory;  // RowPool::memory() numbers as the last accepted step left them
+};
+
 // Rows of one effect over the functions of one stencil pool: phi_r = sum_i weight_i * function_i.
 class RowPool {
  public:
@@ -101,6 +110,37 @@ class RowPool {
   virtual void update(double t, std::span<double> value) const {
     (void)t;
     for (double& v : value) v = 0;
+  }
+
+  // Bounds on the multipliers: both empty, or one entry a row with -infinity or +infinity where there is
+  // none. A cable that only pulls has lower = 0. A bounded row reads: lambda is where the projection of
+  // lambda + theta / metric on the bounds leaves it, theta = phi - target - C lambda (complementarity).
+  std::vector<double> lower, upper;
+
+  // A law c(lambda) in place of C lambda (a gas, say): the row is phi - target - c(lambda) = 0 and
+  // `compliance` only names the places of dc/dlambda. The law must be non-decreasing (dc/dlambda positive
+  // semi-definite); an unsymmetric tangent is given by a symmetric one close to it.
+  virtual bool has_law() const { return false; }
+  // Fills strain = c (one a row) and, where not empty, tangent (one for each entry of `compliance`); returns
+  // a potential U with dU/dlambda = c. Outside the law's domain: infinity, never NaN.
+  virtual double evaluate_law(const RowIncrement& increment, std::span<const double> lambda,
+                              std::span<double> strain, std::span<double> tangent) const {
+    (void)increment;
+    (void)lambda;
+    (void)strain;
+    (void)tangent;
+    return 0;
+  }
+
+  // Numbers kept between steps (the mass of a gas): part of State, so saved, restored and hashed with it.
+  virtual int memory() const { return 0; }
+  virtual void start(std::span<double> memory) const { (void)memory; }
+  // What they become when a step is accepted; increment.memory still holds the old ones.
+  virtual void accept(const RowIncrement& increment, std::span<const double> lambda,
+                      std::span<double> memory) const {
+    (void)increment;
+    (void)lambda;
+    (void)memory;
   }
 };
 

@@ -13,7 +13,8 @@ namespace isochor {
 
 namespace {
 
-// Connected parts of all bodies: a part number for every node.
+// Connected parts of all bodies: a part number for every node. Stencils of any pool connect, so bodies that
+// are tied together count as one.
 std::vector<Index> connected_parts(const SceneFacts& facts, Index& count) {
   std::vector<Index> root(facts.parts.rest.size());
   std::iota(root.begin(), root.end(), 0);
@@ -26,6 +27,12 @@ std::vector<Index> connected_parts(const SceneFacts& facts, Index& count) {
     for (std::size_t c = 0; c < body.global_cells.size(); c += per) {
       for (std::size_t k = 1; k < per; ++k)
         root[at(find(body.global_cells[c + k]))] = find(body.global_cells[c]);
+    }
+  }
+  for (const auto& pool : facts.parts.stencil_pools) {
+    for (Index s = 0; s < pool->stencils(); ++s) {
+      const auto nodes = pool->nodes()[s];
+      for (std::size_t k = 1; k < nodes.size(); ++k) root[at(find(nodes[k]))] = find(nodes[0]);
     }
   }
   std::vector<Index> part(root.size(), -1);
@@ -57,6 +64,66 @@ std::string describe(const Eigen::Matrix<double, 6, 1>& mode) {
 
 }  // namespace
 
+namespace {
+
+using RigidGram = Eigen::Matrix<double, 6, 6>;
+
+// What the rigid motions of a part do to the functions and the energy of a pool that is not blind to them, at
+// rest and each stencil relative to its own size.
+void add_rigid_response(const SceneFacts& facts, const StencilPool& pool, std::span<const Index> part,
+                        std::span<const Vec3> center, std::span<const double> size,
+                        std::vector<RigidGram>& gram) {
+  const auto functions = at(pool.functions());
+  const auto stencils = at(pool.stencils()), entries = pool.nodes().item.size();
+  std::vector<double> energy(stencils), value(stencils * functions), none(stencils * functions, 0.0);
+  std::vector<Vec3> gradient(entries), jacobian(entries * functions);
+  std::vector<Mat3> hessian(static_cast<std::size_t>(pool.hessian_offset().back()));
+  const std::span<const Vec3> rest = facts.parts.rest;
+  pool.evaluate({Want::hessian, Definiteness::exact, 0, pool.stencils(), rest, rest, none},
+                {energy, value, gradient, jacobian, hessian});
+  for (Index s = 0; s < pool.stencils(); ++s) {
+    const auto nodes = pool.nodes()[s];
+    const auto n = static_cast<Eigen::Index>(nodes.size());
+    if (n == 0) continue;
+    const Index c = part[at(nodes[0])];
+    Eigen::MatrixXd modes(3 * n, 6);
+    for (Eigen::Index a = 0; a < n; ++a) {
+      const Vec3 arm = (1 / size[at(c)]) * (rest[at(nodes[static_cast<std::size_t>(a)])] - center[at(c)]);
+      modes.block<3, 3>(3 * a, 0).setIdentity();
+      modes.block<3, 3>(3 * a, 3) << 0, arm.z, -arm.y, -arm.z, 0, arm.x, arm.y, -arm.x, 0;
+    }
+    const auto first = at(pool.nodes().offset[at(s)]);
+    for (std::size_t k = 0; k < functions; ++k) {
+      Eigen::RowVectorXd row(3 * n);
+      for (Eigen::Index a = 0; a < n; ++a) {
+        const Vec3& g = jacobian[first * functions + k * nodes.size() + static_cast<std::size_t>(a)];
+        row.segment<3>(3 * a) << g.x, g.y, g.z;
+      }
+      const double norm = row.norm();
+      if (!(norm > 0) || !std::isfinite(norm)) continue;
+      const Eigen::Matrix<double, 1, 6> response = row * modes / norm;
+      gram[at(c)] += response.transpose() * response;
+    }
+    if (!pool.has_energy()) continue;
+    Eigen::MatrixXd h(3 * n, 3 * n);
+    auto slot = static_cast<std::size_t>(pool.hessian_offset()[at(s)]);
+    for (Eigen::Index a = 0; a < n; ++a) {
+      for (Eigen::Index b = 0; b <= a; ++b, ++slot) {
+        for (int i = 0; i < 3; ++i) {
+          for (int j = 0; j < 3; ++j) {
+            h(3 * a + i, 3 * b + j) = hessian[slot](i, j);
+            h(3 * b + j, 3 * a + i) = hessian[slot](i, j);
+          }
+        }
+      }
+    }
+    const double norm = h.norm();
+    if (norm > 0 && std::isfinite(norm)) gram[at(c)] += modes.transpose() * h * modes / norm;
+  }
+}
+
+}  // namespace
+
 Result<void> check_anchored(const SceneFacts& facts) {
   Index count = 0;
   const std::vector<Index> part = connected_parts(facts, count);
@@ -73,7 +140,7 @@ Result<void> check_anchored(const SceneFacts& facts) {
     const Vec3 d = facts.parts.rest[i] - center[at(part[i])];
     size[at(part[i])] = std::max(size[at(part[i])], std::sqrt(dot(d, d)));
   }
-  using Mat6 = Eigen::Matrix<double, 6, 6>;
+  using Mat6 = RigidGram;
   std::vector<Mat6> gram(at(count), Mat6::Zero());
   for (const PrescribedNode& p : facts.supports.nodes) {
     const Index c = part[at(p.node)];
@@ -85,6 +152,9 @@ Result<void> check_anchored(const SceneFacts& facts) {
       row << d.x, d.y, d.z, m.x, m.y, m.z;
       gram[at(c)] += row * row.transpose();
     }
+  }
+  for (const auto& pool : facts.parts.stencil_pools) {
+    if (pool->sees_rigid_motion()) add_rigid_response(facts, *pool, part, center, size, gram);
   }
   for (Index c = 0; c < count; ++c) {
     const Eigen::SelfAdjointEigenSolver<Mat6> eigen(gram[at(c)]);
@@ -112,7 +182,8 @@ struct HardPool {
 };
 
 bool is_hard(const RowPool& pool) {
-  if (pool.law != RowLaw::compliant || pool.rows() == 0) return false;
+  if (pool.law != RowLaw::compliant || pool.rows() == 0 || pool.has_law()) return false;
+  if (!pool.lower.empty() || !pool.upper.empty()) return false;  // gives way where it would contradict
   // A compliance whose rows sum to zero (a stabilization) leaves the total hard.
   std::vector<double> sum(at(pool.rows()), 0), size(at(pool.rows()), 0);
   for (const ComplianceEntry& e : pool.compliance) {

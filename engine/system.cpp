@@ -61,6 +61,7 @@ class SystemCompiler {
     gather_blocks();
     gather_jacobian();
     collect_compliance();
+    collect_bounds_and_memory();
     build_kkt();
     locate_entries();
     group_unknowns();
@@ -278,13 +279,30 @@ class SystemCompiler {
       const RowPool& pool = *s_->parts_.row_pools[p];
       if (pool.law != RowLaw::compliant) continue;
       const Index base = s_->first_row_[p];
+      // The tangent of a law takes the place of constant values.
+      if (pool.has_law()) s_->laws_.push_back({static_cast<Index>(p), s_->compliance_.size()});
       for (const ComplianceEntry& e : pool.compliance) {
-        s_->compliance_.push_back({base + e.row, base + e.col, e.value});
+        s_->compliance_.push_back({base + e.row, base + e.col, pool.has_law() ? 0.0 : e.value});
         if (e.row == e.col) diagonal[at(base + e.row)] = true;
       }
     }
     for (Index r = 0; r < s_->rows_; ++r) {
       if (!diagonal[at(r)]) s_->compliance_.push_back({r, r, 0.0});
+    }
+  }
+
+  void collect_bounds_and_memory() {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (std::size_t p = 0; p < s_->parts_.row_pools.size(); ++p) {
+      const RowPool& pool = *s_->parts_.row_pools[p];
+      s_->first_memory_.push_back(s_->memory_);
+      s_->memory_ += pool.memory();
+      if (pool.law != RowLaw::compliant || (pool.lower.empty() && pool.upper.empty())) continue;
+      s_->row_lower_.resize(at(s_->rows_), -infinity);
+      s_->row_upper_.resize(at(s_->rows_), infinity);
+      const auto first = s_->first_row_[p];
+      std::copy(pool.lower.begin(), pool.lower.end(), s_->row_lower_.begin() + first);
+      std::copy(pool.upper.begin(), pool.upper.end(), s_->row_upper_.begin() + first);
     }
   }
 

@@ -73,6 +73,19 @@ class System {
 
   std::span<const ComplianceEntry> compliance() const { return compliance_; }  // system rows
   std::span<const std::int64_t> compliance_place() const { return compliance_place_; }
+  // Row pools with a law of their own, and where their compliance entries begin in compliance().
+  struct LawPlace {
+    Index row_pool = 0;
+    std::size_t first_entry = 0;
+  };
+  std::span<const LawPlace> laws() const { return laws_; }
+  // Bounds on the multipliers of all compliant rows; empty when no row has any.
+  std::span<const double> row_lower() const { return row_lower_; }
+  std::span<const double> row_upper() const { return row_upper_; }
+  bool has_bounds() const { return !row_lower_.empty(); }
+  // Numbers that row pools keep between steps: all, and where those of a pool begin.
+  Index memory() const { return memory_; }
+  Index first_memory(Index row_pool) const { return first_memory_[at(row_pool)]; }
   std::span<const double> row_metric() const { return row_metric_; }
   std::span<const double> row_measure() const { return row_measure_; }
   std::span<const std::int64_t> diagonal_place() const { return diagonal_place_; }
@@ -96,7 +109,10 @@ class System {
   std::vector<std::int64_t> block_place_, jacobian_place_, compliance_place_, diagonal_place_;
   std::vector<std::array<Index, 2>> block_nodes_, jacobian_ends_;
   std::vector<ComplianceEntry> compliance_;
-  std::vector<double> row_metric_, row_measure_;
+  std::vector<double> row_metric_, row_measure_, row_lower_, row_upper_;
+  std::vector<LawPlace> laws_;
+  Index memory_ = 0;
+  std::vector<Index> first_memory_;
 };
 
 }  // namespace isochor

@@ -119,6 +119,14 @@ void World::Impl::allocate() {
   prescribed.resize(at(system->prescribed_rows()));
   position.resize(system->free_bases().size());
   reactions.assign(n, Vec3{});
+  state.extra.assign(at(system->memory()), 0.0);
+  memory_before.resize(state.extra.size());
+  for (Index p = 0; p < static_cast<Index>(parts.row_pools.size()); ++p) {
+    const RowPool& pool = *parts.row_pools[at(p)];
+    if (pool.memory() == 0) continue;
+    pool.start(
+        std::span(state.extra).subspan(at(system->first_memory(p)), static_cast<std::size_t>(pool.memory())));
+  }
   // Gravity acts on the mass that inertia has: with a lumped mass, free fall stays rigid. Statics has no
   // inertia and takes the consistent distribution, which is more accurate for Tet10.
   if (options.scheme->mass_scale(1) > 0) weight = parts.mass;
@@ -148,6 +156,20 @@ void World::Impl::evaluate_data(double t) {
   }
 }
 
+// What row pools keep from one step to the next, from the multipliers that the step arrived at.
+void World::Impl::accept_memory(double t0, double t1) {
+  if (system->memory() == 0) return;
+  std::copy(state.extra.begin(), state.extra.end(), memory_before.begin());
+  for (Index p = 0; p < static_cast<Index>(system->parts().row_pools.size()); ++p) {
+    const RowPool& pool = *system->parts().row_pools[at(p)];
+    if (pool.memory() == 0) continue;
+    const auto first = at(system->first_memory(p)), count = static_cast<std::size_t>(pool.memory());
+    pool.accept({t0, t1, std::span<const double>(memory_before).subspan(first, count)},
+                std::span<const double>(lambda_trial).subspan(at(system->first_row(p)), at(pool.rows())),
+                std::span(state.extra).subspan(first, count));
+  }
+}
+
 NewtonReport World::Impl::attempt(double h, int max_iterations, int max_factorizations) {
   const double t_new = state.t + h;
   evaluate_data(t_new);
@@ -159,6 +181,9 @@ NewtonReport World::Impl::attempt(double h, int max_iterations, int max_factoriz
   problem.target = target;
   problem.prescribed = prescribed;
   problem.position = position;
+  problem.t0 = state.t;
+  problem.t1 = t_new;
+  problem.memory = state.extra;
   NewtonOptions newton_options;
   newton_options.max_iterations = max_iterations;
   newton_options.max_factorizations = max_factorizations;
@@ -191,6 +216,7 @@ NewtonReport World::Impl::attempt(double h, int max_iterations, int max_factoriz
     report = std::move(second);
   }
   if (report.status == NewtonStatus::converged) {
+    accept_memory(state.t, t_new);
     options.scheme->finish(h, x_trial, state);
     std::copy(lambda_trial.begin(), lambda_trial.end(), state.lambda.begin());
     std::copy(newton->residual().begin(), newton->residual().end(), reactions.begin());

@@ -26,7 +26,8 @@ struct World::Impl {
 
   // Data of the increment under way; taken once, at compile time.
   std::vector<Vec3> x_trial, predicted, force, position, reactions;
-  std::vector<double> weight, lambda_trial, target, prescribed;  // weight: consistent nodal mass [kg]
+  std::vector<double> weight, lambda_trial, target, prescribed,
+      memory_before;  // weight: consistent nodal mass [kg]
 
   std::vector<double> amounts_before;
 
@@ -38,6 +39,7 @@ struct World::Impl {
   void load_amounts(std::span<const double> all);
   void begin_amounts(double t0, double t1);
   void evaluate_data(double t);
+  void accept_memory(double t0, double t1);
   NewtonReport attempt(double h, int max_iterations, int max_factorizations);
   StepReport invalid(std::string reason) const;
   void finish_report(StepReport& report, const StageSeconds& before, double total) const;

@@ -87,6 +87,21 @@ std::vector<double> World::Impl::row_residuals() {
     theta[at(e.row)] -= e.value * state.lambda[at(e.col)];
     if (e.row != e.col) theta[at(e.col)] -= e.value * state.lambda[at(e.row)];
   }
+  for (const auto& law : system->laws()) {
+    const RowPool& pool = *system->parts().row_pools[at(law.row_pool)];
+    const auto first = at(system->first_row(law.row_pool)), rows = at(pool.rows());
+    std::vector<double> strain(rows);
+    const auto memory =
+        std::span<const double>(state.extra)
+            .subspan(at(system->first_memory(law.row_pool)), static_cast<std::size_t>(pool.memory()));
+    pool.evaluate_law({state.t, state.t, memory}, std::span<const double>(state.lambda).subspan(first, rows),
+                      strain, {});
+    for (std::size_t r = 0; r < rows; ++r) theta[first + r] -= strain[r];
+  }
+  for (std::size_t r = 0; system->has_bounds() && r < theta.size(); ++r) {
+    const double d = system->row_metric()[r], l = state.lambda[r];
+    theta[r] = d * (std::clamp(l + theta[r] / d, system->row_lower()[r], system->row_upper()[r]) - l);
+  }
   return theta;
 }
 
@@ -226,7 +241,7 @@ Result<void> World::load(std::span<const std::byte> bytes) {
         "load: the state was saved from another scene or mesh; load it into a world built the same way"};
   }
   if (!take(bytes, sizes, 5) || sizes[0] != w.state.x.size() || sizes[1] != w.state.lambda.size() ||
-      sizes[3] > bytes.size() || sizes[2] > bytes.size() || sizes[4] != w.reactions.size()) {
+      sizes[3] > bytes.size() || sizes[2] != w.state.extra.size() || sizes[4] != w.reactions.size()) {
     return Error{"load: the saved state is damaged (sizes do not fit this scene)"};
   }
   // Read everything before anything is replaced.

@@ -24,7 +24,7 @@ Compiled compile(const std::vector<isochor::BodyDef>& bodies, const std::vector<
 // The data of one increment at time t, held in its own arrays: what World::Impl hands to Newton.
 struct ProblemData {
   std::vector<isochor::Vec3> predicted, force, position;
-  std::vector<double> target, prescribed;
+  std::vector<double> target, prescribed, memory;
   double mass_scale = 0;
 
   explicit ProblemData(const isochor::System& system);
