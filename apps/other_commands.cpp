@@ -4,6 +4,7 @@
 
 #include "apps/commands.h"
 #include "apps/table.h"
+#include "engine/linear_solver.h"
 #include "isochor/mesh_io.h"
 #include "scenes/library.h"
 #include "scenes/run.h"
@@ -134,25 +135,25 @@ int check(const std::vector<std::string>& meshes, double scale, bool json) {
 }
 
 int version(bool json) {
-  Json solvers = Json::array();
-  if (ISOCHOR_MUMPS) solvers.push_back("mumps");
-  if (ISOCHOR_CHOLMOD) solvers.push_back("cholmod");
-  solvers.push_back("eigen");
+  const std::vector<SolverBackend> backends = linear_solver_backends();
   if (json) {
+    Json solvers = Json::array();
+    for (const SolverBackend& b : backends) {
+      solvers.push_back({{"name", b.name}, {"version", b.version}, {"license", b.license}});
+    }
     print({{"version", isochor::version()},
            {"build", build_description()},
            {"solvers", solvers},
-           {"metis", ISOCHOR_METIS != 0},
-           {"machine", machine_description()}});
+           {"machine", machine_description()},
+           {"license", "Apache-2.0"}});
     return success;
   }
-  std::string names;
-  for (const auto& s : solvers) names += (names.empty() ? "" : ", ") + s.get<std::string>();
   std::printf(
-      "isochor %s\n  build     %s\n  solvers   %s; METIS ordering: %s\n  machine   %s\n  license   "
-      "Apache-2.0\n",
-      isochor::version().c_str(), build_description().c_str(), names.c_str(), ISOCHOR_METIS ? "yes" : "no",
-      machine_description().c_str());
+      "isochor %s\n  build     %s\n  machine   %s\n  license   Apache-2.0; of the solvers in this build:\n",
+      isochor::version().c_str(), build_description().c_str(), machine_description().c_str());
+  for (const SolverBackend& b : backends) {
+    std::printf("            %s %s: %s\n", b.name.c_str(), b.version.c_str(), b.license.c_str());
+  }
   return success;
 }
 

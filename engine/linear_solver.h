@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "isochor/threads.h"
 #include "isochor/types.h"
 
 namespace isochor {
@@ -66,16 +67,10 @@ enum class SolverKind : std::uint8_t { automatic, mumps, cholmod, eigen };
 // part of this build.
 std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, Index size);
 
-// The backends of this build with their licences, for `isochor version`.
+// The backends of this build with their licenses, for `isochor version`.
 struct SolverBackend {
-  std::string name, version, licence;
+  std::string name, version, license;
 };
 std::vector<SolverBackend> linear_solver_backends();
-
-// Threads of the BLAS under the solvers, for the whole process: how many there are decides the last bits of a
-// factor, so it is a setting of its own, never taken from the engine's thread count. The first solver made
-// sets it to 2 unless it was set before. False: the BLAS in this process offers no way to say it.
-bool set_blas_threads(int threads);
-int blas_threads();  // 0: unknown
 
 }  // namespace isochor

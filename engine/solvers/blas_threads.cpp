@@ -1,7 +1,7 @@
 // The thread count of the BLAS under the solvers. Which BLAS that is, is decided when the program is loaded.
 #include <atomic>
 
-#include "engine/linear_solver.h"
+#include "isochor/threads.h"
 
 #if __has_include(<dlfcn.h>)
 #include <dlfcn.h>

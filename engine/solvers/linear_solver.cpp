@@ -34,7 +34,7 @@ std::vector<SolverBackend> linear_solver_backends() {
   if (const std::string v = mumps_version(); !v.empty()) backends.push_back({"MUMPS", v, "CeCILL-C"});
   if (const std::string v = cholmod_version(); !v.empty()) {
     // Only LGPL modules are called, but a distribution's library holds the GPL ones as well, and what a
-    // binary is linked against decides its licence.
+    // binary is linked against decides its license.
     backends.push_back(
         {"CHOLMOD", v, "LGPL-2.1-or-later (simplicial); distribution builds contain GPL modules"});
   }
