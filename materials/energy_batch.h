@@ -16,8 +16,9 @@ struct InvariantResponse {
 };
 
 // `Energy` has: InvariantResponse operator()(double I, double J) const, pure; psi = +infinity outside its
-// domain. P = 2 Psi_I F + Psi_J g and A = 2 Psi_I 1 + 4 Psi_II f f^T + 2 Psi_IJ (f g^T + g f^T) + Psi_JJ g
-// g^T + Psi_J H, g = dJ/dF, H = d2J/dF2 (Smith, de Goes & Kim 2018, section 4).
+// domain (whatever is no finite number is taken as such). P = 2 Psi_I F + Psi_J g and A = 2 Psi_I 1 + 4
+// Psi_II f f^T + 2 Psi_IJ (f g^T + g f^T) + Psi_JJ g g^T + Psi_J H, g = dJ/dF, H = d2J/dF2 (Smith, de Goes &
+// Kim 2018, section 4).
 template <class Energy>
 class InvariantMaterial final : public Material {
  public:
@@ -43,7 +44,7 @@ class InvariantMaterial final : public Material {
 
     double dI[kLanes], dJ[kLanes], dII[kLanes], dIJ[kLanes], dJJ[kLanes];
     for (int l = 0; l < kLanes; ++l) {
-      const InvariantResponse e = energy_(I[l], J[l]);
+      const InvariantResponse e = respond(I[l], J[l]);
       r.psi[l] = e.psi;
       dI[l] = 2 * e.I;
       dJ[l] = e.J;
@@ -72,7 +73,7 @@ class InvariantMaterial final : public Material {
     InvariantHessian gamma;
     for (int l = 0; l < kLanes; ++l) {
       const double a = svd.sigma[0][l], b = svd.sigma[1][l], c = svd.sigma[2][l];
-      const InvariantResponse e = energy_(a * a + b * b + c * c, a * b * c);
+      const InvariantResponse e = respond(a * a + b * b + c * c, a * b * c);
       gamma.I[l] = 2 * e.I;
       gamma.F[l] = 4 * e.II;
       gamma.G[l] = e.JJ;
@@ -85,6 +86,13 @@ class InvariantMaterial final : public Material {
   const Energy& energy() const { return energy_; }
 
  private:
+  InvariantResponse respond(double I, double J) const {
+    const InvariantResponse e = energy_(I, J);
+    if (std::isfinite(e.psi)) return e;
+    InvariantResponse none;
+    none.psi = std::numeric_limits<double>::infinity();
+    return none;
+  }
   static void add_volume_hessian(const PointBatch& points, const double* scale, ResponseBatch& r) {
     for (int i = 1; i < 3; ++i) {
       for (int j = 0; j < i; ++j) {

@@ -3,9 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/material_model.h"
-#include "materials/elastic_constants.h"
-#include "materials/energy_batch.h"
+#include "materials/energy_model.h"
 
 namespace isochor {
 
@@ -16,46 +14,45 @@ InvariantResponse NeoHookeanEnergy::operator()(double I, double J) const {
     return r;
   }
   const double log_J = std::log(J);
-  r.psi = mu / 2 * (I - 3) - mu * log_J + lambda / 2 * log_J * log_J;
+  r.psi = mu / 2 * (I - 3) - mu * log_J;
   r.I = mu / 2;
-  r.J = (lambda * log_J - mu) / J;
-  r.JJ = (lambda * (1 - log_J) + mu) / (J * J);
+  if (term == VolumeTerm::logarithmic) {
+    r.psi += lambda / 2 * log_J * log_J;
+    r.J = (lambda * log_J - mu) / J;
+    r.JJ = (lambda * (1 - log_J) + mu) / (J * J);
+  } else {
+    const double d = J - 1;
+    r.psi += lambda / 2 * d * d;
+    r.J = lambda * d - mu / J;
+    r.JJ = lambda + mu / (J * J);
+  }
   return r;
 }
 
 namespace {
 
-class NeoHookean final : public MaterialModel {
- public:
-  NeoHookean(const LinearElastic& e, BulkChoice choice) : e_(e), choice_(choice) {}
-  std::string_view name() const override { return "neo_hookean"; }
-  std::shared_ptr<const Material> distortional() const override {
-    return std::make_shared<InvariantMaterial<NeoHookeanEnergy>>(name(), NeoHookeanEnergy{e_.mu, 0});
-  }
-  Result<std::shared_ptr<const Material>> complete() const override {
-    if (e_.incompressible()) return one_field_incompressible(name());
-    return std::shared_ptr<const Material>(
-        std::make_shared<InvariantMaterial<NeoHookeanEnergy>>(name(), NeoHookeanEnergy{e_.mu, e_.lambda()}));
-  }
-  double shear_modulus() const override { return e_.mu; }
-  double inverse_bulk() const override {
-    return choice_ == BulkChoice::bulk_modulus ? e_.inverse_bulk : e_.inverse_lambda;
-  }
-  double poisson() const override { return e_.poisson; }
-  double young() const override { return e_.young; }
-  bool defined_inverted() const override { return false; }
-
- private:
-  LinearElastic e_;
-  BulkChoice choice_;
-};
+Result<MaterialPtr> make(std::string_view name, const ElasticConstants& constants, VolumeTerm term) {
+  auto e = linear_elastic(name, constants, 0);
+  if (!e) return Error{e.error()};
+  const LinearElastic& small = e.value();
+  auto rows = inverse_kappa(name, small, 0, constants.bulk_choice);
+  const auto energy = [&](double lambda) {
+    return std::make_shared<InvariantMaterial<NeoHookeanEnergy>>(name,
+                                                                 NeoHookeanEnergy{small.mu, lambda, term});
+  };
+  EnergyModel m{name, small, rows.value(), energy(0), nullptr, false};
+  if (!small.incompressible()) m.complete = energy(small.lambda());
+  return make_model(std::move(m));
+}
 
 }  // namespace
 
 Result<MaterialPtr> neo_hookean(const ElasticConstants& constants) {
-  auto e = linear_elastic("neo_hookean", constants, 0);
-  if (!e) return Error{e.error()};
-  return MaterialPtr(std::make_shared<NeoHookean>(e.value(), constants.bulk_choice));
+  return make("neo_hookean", constants, VolumeTerm::logarithmic);
+}
+
+Result<MaterialPtr> neo_hookean_ogden(const ElasticConstants& constants) {
+  return make("neo_hookean_ogden", constants, VolumeTerm::ogden);
 }
 
 }  // namespace isochor

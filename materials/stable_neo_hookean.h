@@ -1,21 +1,22 @@
-// psi = mu/2 (I - 3) - mu (J - 1) + lambda/2 (J - 1)^2 [Pa], Smith, de Goes & Kim 2018, eq. 13; lambda = 0:
-// the distortional part. With the small-strain constants mu = mu_L and lambda = lambda_L + mu_L.
+// Smith, de Goes & Kim 2018: eq. 13, psi = mu/2 (I - 3) - mu (J - 1) + lambda/2 (J - 1)^2 [Pa], and eq. 14
+// with the barrier at the origin, psi = mu/2 (I - 3) - mu/2 log(I + 1) + lambda/2 (J - alpha)^2.
 #pragma once
 
-#include "materials/energy_batch.h"
+#include "materials/shifted_energy.h"
 
 namespace isochor {
 
-struct StableNeoHookeanEnergy {
-  double mu = 0, lambda = 0;  // [Pa]
-  InvariantResponse operator()(double I, double J) const {
-    InvariantResponse r;
-    const double d = J - 1;
-    r.psi = mu / 2 * (I - 3) - mu * d + lambda / 2 * d * d;
-    r.I = mu / 2;
-    r.J = lambda * d - mu;
-    r.JJ = lambda;
-    return r;
+struct LinearStrainPart {
+  double mu = 0;  // [Pa]
+  StrainPart operator()(double I) const { return {mu / 2 * (I - 3), mu / 2, 0}; }
+};
+
+// mu is that of eq. 14: 4/3 of the small-strain shear modulus.
+struct BarrierStrainPart {
+  double mu = 0;  // [Pa]
+  StrainPart operator()(double I) const {
+    const double q = 1 / (I + 1);
+    return {mu / 2 * (I - 3 - std::log1p((I - 3) / 4)), mu / 2 * (1 - q), mu / 2 * q * q};
   }
 };
 

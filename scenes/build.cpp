@@ -18,16 +18,6 @@ Result<Mesh> make_mesh(const SceneBody& body, const std::string& folder) {
   return read_mesh(path.lexically_normal().string(), {file.scale});
 }
 
-Result<MaterialPtr> make_material(const MaterialDef& def) {
-  switch (def.law) {
-    case MaterialLaw::neo_hookean:
-      return neo_hookean(def.constants);
-    case MaterialLaw::stable_neo_hookean:
-      return stable_neo_hookean(def.constants);
-  }
-  return Error{"unknown material law"};
-}
-
 std::string place(const char* list, std::size_t i) {
   return std::string(list) + "[" + std::to_string(i) + "]";
 }

@@ -15,12 +15,40 @@
 
 namespace isochor {
 
-enum class MaterialLaw : std::uint8_t { neo_hookean, stable_neo_hookean };
+enum class MaterialLaw : std::uint8_t {
+  neo_hookean,
+  neo_hookean_ogden,
+  stable_neo_hookean,
+  stable_neo_hookean_barrier,
+  isochoric_neo_hookean,
+  isochoric_extended,
+  corotated,
+  fixed_corotated,
+  stvk,
+  stvk_resistant,
+  linear,
+  mooney_rivlin,
+  fung,
+  arruda_boyce,
+  ogden
+};
+
+// Constants of single laws; each is refused beside a law that does not know it. The functions of
+// isochor/materials.h say what they are.
+struct LawConstants {
+  double c1 = 0, c2 = 0;               // mooney_rivlin [Pa]
+  double mu0 = 0, mu1 = 0, gamma = 0;  // fung [Pa, -, Pa]
+  double beta1 = 0, beta2 = 0;         // arruda_boyce [-]
+  std::vector<OgdenTerm> terms;        // ogden
+  double resistance = 0;               // stvk_resistant [Pa]
+  double threshold = 0.1;              // isochoric_extended [-]
+};
 
 struct MaterialDef {
   std::string region;  // empty: every region not named elsewhere
   MaterialLaw law = MaterialLaw::neo_hookean;
-  ElasticConstants constants;
+  ElasticConstants constants;  // of laws with constants of their own, only Poisson's ratio counts
+  LawConstants own;
   double density = 1000;  // [kg/m^3]
 };
 
@@ -139,6 +167,9 @@ struct BuiltScene {
 struct BuildOptions {
   int threads = 0;  // 0: all the machine has
 };
+
+// The material of a definition; messages name the law and the constant.
+Result<MaterialPtr> make_material(const MaterialDef& def);
 
 // Reads meshes, makes materials and effects, compiles the world. Errors are those of bad input.
 Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options = {});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "isochor/types.h"
 
@@ -29,12 +30,83 @@ struct ElasticConstants {
   BulkChoice bulk_choice = BulkChoice::consistent;
 };
 
-// psi = mu/2 (I - 3) - mu log J, with the volume rows or with lambda/2 log^2 J. Undefined for inverted
-// elements.
+// Each function below makes a material that can be used with volume rows (its energy is then the distortional
+// part) or without (the complete one-field energy; refused at nu = 0.5). I = tr F^T F, J = det F, sigma_i the
+// principal stretches. Unless said otherwise E and nu come back at small strain. One page each in
+// docs/materials.
+
+// psi = mu/2 (I - 3) - mu log J, complete with lambda/2 log^2 J. Undefined for inverted elements. nu in [0,
+// 0.5].
 Result<MaterialPtr> neo_hookean(const ElasticConstants& constants);
 
-// psi = mu/2 (I - 3) - mu (J - 1), with the volume rows or with lambda/2 (J - 1)^2: Smith, de Goes & Kim
-// 2018, eq. 13. Defined for inverted elements.
+// The same with Ogden's volume term lambda/2 (J - 1)^2 in the complete energy.
+Result<MaterialPtr> neo_hookean_ogden(const ElasticConstants& constants);
+
+// psi = mu/2 (I - 3) - mu (J - 1), complete with lambda/2 (J - 1)^2: Smith, de Goes & Kim 2018, eq. 13.
+// Defined for inverted elements. nu in [-0.99, 0.5]. Mooney's solid mu/2 (I - 3), its multiplier counted from
+// rest, is this one.
 Result<MaterialPtr> stable_neo_hookean(const ElasticConstants& constants);
+
+// The same paper's eq. 14: mu/2 (I - 3) - mu/2 log(I + 1) + lambda/2 (J - alpha)^2, stiff also at the origin.
+Result<MaterialPtr> stable_neo_hookean_barrier(const ElasticConstants& constants);
+
+// psi = mu/2 (J^(-2/3) I - 3), complete with K/2 (J - 1)^2 (Bonet & Wood; Rivlin). nu in [-0.99, 0.5].
+// Undefined for inverted elements.
+Result<MaterialPtr> isochoric_neo_hookean(const ElasticConstants& constants);
+
+// The same with J^(-1/3) continued to the second order below J = threshold: defined for inverted elements.
+Result<MaterialPtr> isochoric_extended(const ElasticConstants& constants, double threshold = 0.1);
+
+// psi = mu |F - R|^2, complete with lambda/2 tr^2(S - 1); R the rotation of F = R S. nu in [0, 0.5].
+Result<MaterialPtr> corotated(const ElasticConstants& constants);
+
+// The same with lambda/2 (J - 1)^2.
+Result<MaterialPtr> fixed_corotated(const ElasticConstants& constants);
+
+// psi = mu |E|^2, complete with lambda/2 tr^2 E; E Green's strain. Softens and collapses under compression.
+Result<MaterialPtr> stvk(const ElasticConstants& constants);
+
+// The same with resistance/12 ((1 - J)/6)^3 for J < 1; resistance > 0 [Pa].
+Result<MaterialPtr> stvk_resistant(const ElasticConstants& constants, double resistance);
+
+// Linear elasticity: small strains and small rotations only. With volume rows: the deviatoric part.
+Result<MaterialPtr> linear(const ElasticConstants& constants);
+
+// psi = c1 (I - 3) + c2 (II - 3), II = (I^2 - tr C^2)/2, with mu_L = 2 (c1 + c2).
+struct MooneyRivlinConstants {
+  double c1 = 0, c2 = 0;  // [Pa] >= 0, not both zero
+  double poisson = 0.5;   // at small strain, in [-0.99, 0.5]; it must leave lambda_L + 2 c1 >= 0
+};
+Result<MaterialPtr> mooney_rivlin(const MooneyRivlinConstants& constants);
+
+// psi = mu0/2 (I - 3) + gamma/2 (exp(mu1 (I - 3)) - 1), with mu_L = mu0 + gamma mu1.
+struct FungConstants {
+  double mu0 = 0;        // [Pa] >= 0
+  double mu1 = 0;        // [-] >= 0, how soon it stiffens
+  double gamma = 0;      // [Pa] >= 0
+  double poisson = 0.5;  // at small strain; it must leave lambda_L + mu_L - 2 gamma mu1^2 >= 0
+};
+Result<MaterialPtr> fung(const FungConstants& constants);
+
+// psi = mu/2 (I - 3) + mu beta1/4 (I^2 - 9) + mu beta2/6 (I^3 - 27), with mu_L = mu (1 + 3 beta1 + 9 beta2).
+// For chains of N links beta1 = 1/(5 N) and beta2 = 11/(175 N^2).
+struct ArrudaBoyceConstants {
+  double mu = 0;                // [Pa] > 0
+  double beta1 = 0, beta2 = 0;  // [-] >= 0
+  double poisson = 0.5;         // at small strain; it must leave lambda_L + mu (1 + beta1 - 3 beta2) >= 0
+};
+Result<MaterialPtr> arruda_boyce(const ArrudaBoyceConstants& constants);
+
+// psi = sum mu/alpha (sigma_0^alpha + sigma_1^alpha + sigma_2^alpha - 3) - (sum mu) log J, with mu_L = sum mu
+// alpha / 2. Undefined for inverted elements.
+struct OgdenTerm {
+  double mu = 0;     // [Pa], of the sign of alpha
+  double alpha = 0;  // [-], not zero
+};
+struct OgdenConstants {
+  std::vector<OgdenTerm> terms;
+  double poisson = 0.5;  // at small strain, in [0, 0.5]
+};
+Result<MaterialPtr> ogden(const OgdenConstants& constants);
 
 }  // namespace isochor

@@ -11,6 +11,12 @@ namespace isochor::scene_json {
 enum class CurveStart : std::uint8_t { zero, one, constant };
 
 template <class Io>
+void describe(Io& io, OgdenTerm& t) {
+  io.number("mu", t.mu, 0.0);
+  io.number("alpha", t.alpha, 0.0);
+}
+
+template <class Io>
 void describe(Io& io, MaterialDef& m) {
   io.text("region", m.region);
   io.word("law", m.law, MaterialLaw::neo_hookean);
@@ -20,6 +26,16 @@ void describe(Io& io, MaterialDef& m) {
   io.number_or_inf("lambda", m.constants.lambda, -1.0);
   io.number_or_inf("bulk", m.constants.bulk, -1.0);
   io.word("bulk_choice", m.constants.bulk_choice, BulkChoice::consistent);
+  io.number("c1", m.own.c1, 0.0);
+  io.number("c2", m.own.c2, 0.0);
+  io.number("mu0", m.own.mu0, 0.0);
+  io.number("mu1", m.own.mu1, 0.0);
+  io.number("gamma", m.own.gamma, 0.0);
+  io.number("beta1", m.own.beta1, 0.0);
+  io.number("beta2", m.own.beta2, 0.0);
+  io.list("terms", m.own.terms);
+  io.number("resistance", m.own.resistance, 0.0);
+  io.number("threshold", m.own.threshold, 0.1);
   io.number("density", m.density, 1000.0);
 }
 

@@ -21,8 +21,16 @@ struct Words;  // specialized below: `static constexpr std::array<std::pair<E, s
 ISOCHOR_WORDS(Element, 3, {Element::tet4, "tet4"}, {Element::tet4_edge_smoothed, "tet4_edge_smoothed"},
               {Element::tet10, "tet10"});
 ISOCHOR_WORDS(CellType, 2, {CellType::tet4, "tet4"}, {CellType::tet10, "tet10"});
-ISOCHOR_WORDS(MaterialLaw, 2, {MaterialLaw::neo_hookean, "neo_hookean"},
-              {MaterialLaw::stable_neo_hookean, "stable_neo_hookean"});
+ISOCHOR_WORDS(MaterialLaw, 15, {MaterialLaw::neo_hookean, "neo_hookean"},
+              {MaterialLaw::neo_hookean_ogden, "neo_hookean_ogden"},
+              {MaterialLaw::stable_neo_hookean, "stable_neo_hookean"},
+              {MaterialLaw::stable_neo_hookean_barrier, "stable_neo_hookean_barrier"},
+              {MaterialLaw::isochoric_neo_hookean, "isochoric_neo_hookean"},
+              {MaterialLaw::isochoric_extended, "isochoric_extended"}, {MaterialLaw::corotated, "corotated"},
+              {MaterialLaw::fixed_corotated, "fixed_corotated"}, {MaterialLaw::stvk, "stvk"},
+              {MaterialLaw::stvk_resistant, "stvk_resistant"}, {MaterialLaw::linear, "linear"},
+              {MaterialLaw::mooney_rivlin, "mooney_rivlin"}, {MaterialLaw::fung, "fung"},
+              {MaterialLaw::arruda_boyce, "arruda_boyce"}, {MaterialLaw::ogden, "ogden"});
 ISOCHOR_WORDS(BulkChoice, 2, {BulkChoice::consistent, "consistent"},
               {BulkChoice::bulk_modulus, "bulk_modulus"});
 ISOCHOR_WORDS(VolumeStrainKind, 2, {VolumeStrainKind::linear, "linear"},

@@ -145,6 +145,7 @@ TEST_CASE("materials agree with finite differences over decades of steps") {
 TEST_CASE("materials do not see rotations") {
   const Gradient R = rotation();
   for (const MaterialCase& c : test::material_cases()) {
+    if (!c.objective) continue;
     INFO(c.name);
     for (const auto& sample : samples(c)) {
       auto turned = sample, spun = sample;
@@ -156,8 +157,8 @@ TEST_CASE("materials do not see rotations") {
       c.material->evaluate(Want::gradient, to_batch(spun), before);
       for (std::size_t l = 0; l < kLanes; ++l) {
         const double size = c.scale + std::abs(r.psi[l]);
-        CHECK(std::abs(after.psi[l] - r.psi[l]) < 1e-13 * size);   // objective
-        CHECK(std::abs(before.psi[l] - r.psi[l]) < 1e-13 * size);  // isotropic
+        CHECK(std::abs(after.psi[l] - r.psi[l]) < 1e-13 * size);  // objective
+        if (c.isotropic) CHECK(std::abs(before.psi[l] - r.psi[l]) < 1e-13 * size);
         Gradient P;
         double stress = c.scale;
         for (std::size_t i = 0; i < 9; ++i) P[i] = r.P[i][l], stress = std::max(stress, std::abs(P[i]));

@@ -58,6 +58,7 @@ TEST_CASE("tangents at rest give E and nu back") {
 
 TEST_CASE("all pairs of constants mean the same material") {
   for (const auto& model : test::model_cases()) {
+    if (!model.elastic_constants) continue;
     INFO(model.name);
     ElasticConstants by_young, by_lambda, by_bulk;
     by_young.young = 3e4;
@@ -87,6 +88,7 @@ TEST_CASE("bad constants are refused with name, value and remedy") {
     return r ? std::string("accepted") : r.error();
   };
   for (const auto& model : test::model_cases()) {
+    if (!model.elastic_constants) continue;
     INFO(model.name);
     const auto young = [](double e, double nu) {
       ElasticConstants c;

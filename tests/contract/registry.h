@@ -36,6 +36,7 @@ struct ModelCase {
   std::string name;
   std::vector<std::string> covers;
   std::function<isochor::Result<isochor::MaterialPtr>(const isochor::ElasticConstants&)> make;
+  bool elastic_constants = true;  // false: `make` turns E and nu into constants of the material's own
 };
 std::vector<ModelCase> model_cases();
 

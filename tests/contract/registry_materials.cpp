@@ -1,3 +1,4 @@
+#include "contract/formulas.h"
 #include "contract/registry.h"
 #include "engine/elements/element_guard.h"
 #include "engine/material_model.h"
@@ -7,29 +8,15 @@ namespace test {
 namespace {
 
 using isochor::ElasticConstants;
-using isochor::Material;
 using isochor::MaterialPtr;
-
-HyperDual determinant(const std::array<HyperDual, 9>& F) {
-  return F[0] * (F[4] * F[8] - F[5] * F[7]) - F[1] * (F[3] * F[8] - F[5] * F[6]) +
-         F[2] * (F[3] * F[7] - F[4] * F[6]);
-}
-
-HyperDual trace_C(const std::array<HyperDual, 9>& F) {
-  HyperDual sum;
-  for (const HyperDual& f : F) sum += f * f;
-  return sum;
-}
+using isochor::Result;
 
 constexpr double kYoung = 2.6, kPoisson = 0.3;
 constexpr double kMu = kYoung / (2 * (1 + kPoisson));
 constexpr double kLambda = kYoung * kPoisson / ((1 + kPoisson) * (1 - 2 * kPoisson));
+constexpr double kBulk = kLambda + 2 * kMu / 3;
 
-std::shared_ptr<const Material> complete(const MaterialPtr& model) {
-  return model->complete().value();
-}
-
-MaterialPtr made(isochor::Result<MaterialPtr> result) {
+MaterialPtr made(Result<MaterialPtr> result) {
   return std::move(result).value();
 }
 
@@ -40,38 +27,206 @@ ElasticConstants constants() {
   return c;
 }
 
-void add_neo_hookean(std::vector<MaterialCase>& out) {
-  const MaterialPtr model = made(isochor::neo_hookean(constants()));
-  const auto energy = [](double lambda) {
-    return [lambda](const std::array<HyperDual, 9>& F) {
-      const HyperDual q = log(determinant(F));
-      return 0.5 * kMu * (trace_C(F) - 3.0) - kMu * q + 0.5 * lambda * q * q;
-    };
-  };
-  MaterialCase c{"neo_hookean, distortional", {"materials/neo_hookean"}, model->distortional(), energy(0)};
+// A formula with the modulus of its volume part, 0 in the distortional energy.
+using FormulaOfKappa = std::function<HyperDual(const Gradient9& F, double kappa)>;
+
+struct Kind {
+  std::string name, covers;
+  MaterialPtr model;
+  FormulaOfKappa formula;
+  double kappa = 0;  // of the complete energy
+  bool inverted = true;
+};
+
+void add(const Kind& kind, std::vector<MaterialCase>& out, bool objective = true, bool isotropic = true) {
+  MaterialCase c;
+  c.name = kind.name + ", distortional";
+  c.covers = {kind.covers};
+  c.material = kind.model->distortional();
+  c.energy = [f = kind.formula](const Gradient9& F) { return f(F, 0); };
+  c.inverted = kind.inverted;
+  c.objective = objective;
+  c.isotropic = isotropic;
   out.push_back(c);
-  c.name = "neo_hookean, complete";
-  c.material = complete(model);
-  c.energy = energy(kLambda);
+  c.name = kind.name + ", complete";
+  c.material = kind.model->complete().value();
+  c.energy = [f = kind.formula, kappa = kind.kappa](const Gradient9& F) { return f(F, kappa); };
   out.push_back(c);
 }
 
-void add_stable_neo_hookean(std::vector<MaterialCase>& out) {
-  const MaterialPtr model = made(isochor::stable_neo_hookean(constants()));
-  const auto energy = [](double lambda) {
-    return [lambda](const std::array<HyperDual, 9>& F) {
-      const HyperDual d = determinant(F) - 1.0;
-      return 0.5 * kMu * (trace_C(F) - 3.0) - kMu * d + 0.5 * lambda * d * d;
-    };
+HyperDual square(const HyperDual& v) {
+  return v * v;
+}
+
+void add_neo_hookean(std::vector<MaterialCase>& out) {
+  const auto shear = [](const Gradient9& F) {
+    return 0.5 * kMu * (trace_C(F) - 3.0) - kMu * log(determinant(F));
   };
-  MaterialCase c{
-      "stable_neo_hookean, distortional", {"materials/stable_neo_hookean"}, model->distortional(), energy(0)};
-  c.inverted = true;
-  out.push_back(c);
-  c.name = "stable_neo_hookean, complete";
-  c.material = complete(model);
-  c.energy = energy(kLambda + kMu);
-  out.push_back(c);
+  add({"neo_hookean", "materials/neo_hookean", made(isochor::neo_hookean(constants())),
+       [=](const Gradient9& F, double k) { return shear(F) + 0.5 * k * square(log(determinant(F))); },
+       kLambda, false},
+      out);
+  add({"neo_hookean_ogden", "materials/neo_hookean", made(isochor::neo_hookean_ogden(constants())),
+       [=](const Gradient9& F, double k) { return shear(F) + 0.5 * k * square(determinant(F) - 1.0); },
+       kLambda, false},
+      out);
+}
+
+void add_stable_neo_hookean(std::vector<MaterialCase>& out) {
+  // Mooney's solid with a shifted rest volume, up to a constant.
+  add({"stable_neo_hookean", "materials/stable_neo_hookean", made(isochor::stable_neo_hookean(constants())),
+       [](const Gradient9& F, double k) {
+         const HyperDual J = determinant(F), shear = 0.5 * kMu * (trace_C(F) - 3.0);
+         if (k == 0) return shear - kMu * (J - 1.0);
+         return shear + 0.5 * k * square(J - (1 + kMu / k)) - 0.5 * kMu * kMu / k;
+       },
+       kLambda + kMu},
+      out);
+  // As printed, with alpha = 1 + mu/lambda - mu/(4 lambda); shifted to zero at rest.
+  constexpr double mu = 4 * kMu / 3;
+  add({"stable_neo_hookean_barrier", "materials/stable_neo_hookean",
+       made(isochor::stable_neo_hookean_barrier(constants())),
+       [=](const Gradient9& F, double k) {
+         const HyperDual J = determinant(F), I = trace_C(F);
+         const HyperDual shear = 0.5 * mu * (I - 3.0) - 0.5 * mu * (log(I + 1.0) - std::log(4.0));
+         if (k == 0) return shear - 0.75 * mu * (J - 1.0);
+         const double alpha = 1 + mu / k - mu / (4 * k);
+         return shear + 0.5 * k * (square(J - alpha) - (1 - alpha) * (1 - alpha));
+       },
+       kLambda + 5 * kMu / 6},
+      out);
+}
+
+void add_isochoric(std::vector<MaterialCase>& out) {
+  const auto energy = [](const HyperDual& a, const Gradient9& F, double k) {
+    return 0.5 * kMu * (a * a * trace_C(F) - 3.0) + 0.5 * k * square(determinant(F) - 1.0);
+  };
+  add({"isochoric_neo_hookean", "materials/isochoric", made(isochor::isochoric_neo_hookean(constants())),
+       [=](const Gradient9& F, double k) { return energy(pow(determinant(F), -1.0 / 3), F, k); }, kBulk,
+       false},
+      out);
+  // A threshold within reach of the samples.
+  constexpr double e = 0.6;
+  add({"isochoric_extended", "materials/isochoric", made(isochor::isochoric_extended(constants(), e)),
+       [=](const Gradient9& F, double k) {
+         const HyperDual J = determinant(F);
+         if (J.a > e) return energy(pow(J, -1.0 / 3), F, k);
+         const HyperDual d = J - e;
+         return energy(
+             std::pow(e, -1.0 / 3) - std::pow(e, -4.0 / 3) / 3 * d + 2.0 / 9 * std::pow(e, -7.0 / 3) * d * d,
+             F, k);
+       },
+       kBulk},
+      out);
+}
+
+void add_corotated(std::vector<MaterialCase>& out) {
+  // |F - R|^2 = I - 2 tr S + 3.
+  const auto shear = [](const Gradient9& F) { return kMu * (trace_C(F) - 2.0 * trace_S(F) + 3.0); };
+  add({"corotated", "materials/corotated", made(isochor::corotated(constants())),
+       [=](const Gradient9& F, double k) { return shear(F) + 0.5 * k * square(trace_S(F) - 3.0); }, kLambda},
+      out);
+  add({"fixed_corotated", "materials/corotated", made(isochor::fixed_corotated(constants())),
+       [=](const Gradient9& F, double k) { return shear(F) + 0.5 * k * square(determinant(F) - 1.0); },
+       kLambda},
+      out);
+}
+
+void add_stvk(std::vector<MaterialCase>& out) {
+  // |E|^2 = (tr C^2 - 2 I + 3)/4.
+  const auto energy = [](const Gradient9& F, double k) {
+    return 0.25 * kMu * (trace_C2(F) - 2.0 * trace_C(F) + 3.0) + 0.125 * k * square(trace_C(F) - 3.0);
+  };
+  add({"stvk", "materials/stvk", made(isochor::stvk(constants())), energy, kLambda}, out);
+  constexpr double resistance = 700;
+  add({"stvk_resistant", "materials/stvk", made(isochor::stvk_resistant(constants(), resistance)),
+       [=](const Gradient9& F, double k) {
+         const HyperDual q = (1.0 - determinant(F)) / 6.0;
+         return energy(F, k) + (q.a > 0 ? resistance / 12 * q * q * q : HyperDual());
+       },
+       kLambda},
+      out);
+}
+
+void add_linear(std::vector<MaterialCase>& out) {
+  add({"linear", "materials/linear", made(isochor::linear(constants())),
+       [](const Gradient9& F, double K) {
+         HyperDual squares, trace;
+         for (std::size_t i = 0; i < 3; ++i) {
+           for (std::size_t j = 0; j < 3; ++j) {
+             squares += square(0.5 * (F[3 * i + j] + F[3 * j + i]) - (i == j ? 1.0 : 0.0));
+           }
+           trace += F[4 * i] - 1.0;
+         }
+         return kMu * (squares - square(trace) / 3.0) + 0.5 * K * square(trace);
+       },
+       kBulk},
+      out, false, false);
+}
+
+constexpr double kC1 = 0.35, kC2 = 0.2;
+isochor::MooneyRivlinConstants mooney_constants(double mu, double poisson) {
+  return {kC1 / (2 * (kC1 + kC2)) * mu, kC2 / (2 * (kC1 + kC2)) * mu, poisson};
+}
+constexpr double kMu1 = 0.4, kMu0Share = 0.5;
+isochor::FungConstants fung_constants(double mu, double poisson) {
+  return {kMu0Share * mu, kMu1, (1 - kMu0Share) / kMu1 * mu, poisson};
+}
+constexpr double kBeta1 = 0.2, kBeta2 = 0.05;
+isochor::ArrudaBoyceConstants arruda_boyce_constants(double mu, double poisson) {
+  return {mu / (1 + 3 * kBeta1 + 9 * kBeta2), kBeta1, kBeta2, poisson};
+}
+// Exponents whose power sums are polynomials of invariants and of tr S.
+isochor::OgdenConstants ogden_constants(double mu, double poisson) {
+  return {{{0.7 * mu, 1}, {0.2 * mu, 2}, {0.15 * mu, 4}, {-0.1 * mu, -2}, {-0.1 * mu, -1}}, poisson};
+}
+
+void add_native(std::vector<MaterialCase>& out) {
+  const auto m = mooney_constants(1.1, kPoisson);
+  const double lambda = 2 * 1.1 * kPoisson / (1 - 2 * kPoisson);
+  add({"mooney_rivlin", "materials/mooney_rivlin", made(isochor::mooney_rivlin(m)),
+       [=](const Gradient9& F, double k) {
+         const HyperDual d = determinant(F) - 1.0, I = trace_C(F), II = 0.5 * (I * I - trace_C2(F));
+         return m.c1 * (I - 3.0) + m.c2 * (II - 3.0) - (2 * m.c1 + 4 * m.c2) * d + 0.5 * k * d * d;
+       },
+       lambda + 2 * m.c1},
+      out);
+  const auto f = fung_constants(1.1, kPoisson);
+  add({"fung", "materials/fung", made(isochor::fung(f)),
+       [=](const Gradient9& F, double k) {
+         const HyperDual d = determinant(F) - 1.0, I = trace_C(F);
+         const HyperDual shear = 0.5 * f.mu0 * (I - 3.0) + 0.5 * f.gamma * (exp(f.mu1 * (I - 3.0)) - 1.0);
+         if (k == 0) return shear - 1.1 * d;
+         const double alpha = 1 + (f.mu0 + f.gamma * f.mu1) / k;
+         return shear + 0.5 * k * (square(d + (1 - alpha)) - (1 - alpha) * (1 - alpha));
+       },
+       lambda + 1.1 - 2 * f.gamma * f.mu1 * f.mu1},
+      out);
+  const auto a = arruda_boyce_constants(1.1, kPoisson);
+  add({"arruda_boyce", "materials/arruda_boyce", made(isochor::arruda_boyce(a)),
+       [=](const Gradient9& F, double k) {
+         const HyperDual d = determinant(F) - 1.0, I = trace_C(F);
+         return 0.5 * a.mu * (I - 3.0) + a.mu * a.beta1 / 4 * (I * I - 9.0) +
+                a.mu * a.beta2 / 6 * (I * I * I - 27.0) - 1.1 * d + 0.5 * k * d * d;
+       },
+       lambda + a.mu * (1 + a.beta1 - 3 * a.beta2)},
+      out);
+  const auto o = ogden_constants(1.1, kPoisson);
+  add({"ogden", "materials/ogden", made(isochor::ogden(o)),
+       [=](const Gradient9& F, double k) {
+         const HyperDual J = determinant(F), I = trace_C(F), s = trace_S(F);
+         const HyperDual q = 0.5 * (s * s - I), II = 0.5 * (I * I - trace_C2(F));
+         const HyperDual sums[] = {s, I, trace_C2(F), II / (J * J), q / J};
+         HyperDual psi;
+         double c = 0;
+         for (std::size_t p = 0; p < 5; ++p) {
+           psi += o.terms[p].mu / o.terms[p].alpha * (sums[p] - 3.0);
+           c += o.terms[p].mu;
+         }
+         return psi - c * log(J) + 0.5 * k * square(log(J));
+       },
+       lambda, false},
+      out);
 }
 
 void add_element_guard(std::vector<MaterialCase>& out) {
@@ -79,7 +234,7 @@ void add_element_guard(std::vector<MaterialCase>& out) {
   MaterialCase c;
   c.name = "element_guard";
   c.material = std::make_shared<isochor::ElementGuard>(b, threshold);
-  c.energy = [](const std::array<HyperDual, 9>& F) {
+  c.energy = [](const Gradient9& F) {
     const HyperDual J = determinant(F);
     if (J.a >= threshold) return HyperDual();
     const HyperDual q = log(J / threshold);
@@ -89,22 +244,50 @@ void add_element_guard(std::vector<MaterialCase>& out) {
   out.push_back(c);
 }
 
+// A material with constants of its own, made from E and nu by `constants_of(mu, nu)`.
+template <class Make, class Constants>
+ModelCase native(std::string name, std::vector<std::string> covers, Make make, Constants constants_of) {
+  return {std::move(name), std::move(covers),
+          [=](const ElasticConstants& c) {
+            return make(constants_of(c.young / (2 * (1 + c.poisson)), c.poisson));
+          },
+          false};
+}
+
 }  // namespace
 
 std::vector<MaterialCase> material_cases() {
   std::vector<MaterialCase> out;
   add_neo_hookean(out);
   add_stable_neo_hookean(out);
+  add_isochoric(out);
+  add_corotated(out);
+  add_stvk(out);
+  add_linear(out);
+  add_native(out);
   add_element_guard(out);
   return out;
 }
 
 std::vector<ModelCase> model_cases() {
+  const std::vector<std::string> shared = {"materials/elastic_constants", "materials/energy_model"};
   return {
-      {"neo_hookean", {"materials/neo_hookean", "materials/elastic_constants"}, isochor::neo_hookean},
-      {"stable_neo_hookean",
-       {"materials/stable_neo_hookean", "materials/elastic_constants"},
-       isochor::stable_neo_hookean},
+      {"neo_hookean", shared, isochor::neo_hookean},
+      {"neo_hookean_ogden", shared, isochor::neo_hookean_ogden},
+      {"stable_neo_hookean", shared, isochor::stable_neo_hookean},
+      {"stable_neo_hookean_barrier", shared, isochor::stable_neo_hookean_barrier},
+      {"isochoric_neo_hookean", shared, isochor::isochoric_neo_hookean},
+      {"isochoric_extended", shared,
+       [](const ElasticConstants& c) { return isochor::isochoric_extended(c, 0.1); }},
+      {"corotated", shared, isochor::corotated},
+      {"fixed_corotated", shared, isochor::fixed_corotated},
+      {"stvk", shared, isochor::stvk},
+      {"stvk_resistant", shared, [](const ElasticConstants& c) { return isochor::stvk_resistant(c, 1e5); }},
+      {"linear", shared, isochor::linear},
+      native("mooney_rivlin", {"materials/native_constants"}, isochor::mooney_rivlin, mooney_constants),
+      native("fung", {"materials/native_constants"}, isochor::fung, fung_constants),
+      native("arruda_boyce", {"materials/native_constants"}, isochor::arruda_boyce, arruda_boyce_constants),
+      native("ogden", {"materials/native_constants"}, isochor::ogden, ogden_constants),
   };
 }
 

@@ -25,8 +25,22 @@ Measured pull(Element element, const MaterialPtr& material, bool rows, double st
 }  // namespace
 
 TEST_CASE("small strain gives E and nu back") {
-  const std::pair<const char*, Make> materials[] = {{"neo_hookean", isochor::neo_hookean},
-                                                    {"stable_neo_hookean", isochor::stable_neo_hookean}};
+  const std::pair<const char*, Make> materials[] = {
+      {"neo_hookean", isochor::neo_hookean},
+      {"stable_neo_hookean", isochor::stable_neo_hookean},
+      {"stable_neo_hookean_barrier", isochor::stable_neo_hookean_barrier},
+      {"isochoric_neo_hookean", isochor::isochoric_neo_hookean},
+      {"corotated", isochor::corotated},
+      {"stvk", isochor::stvk},
+      {"mooney_rivlin",
+       [](const ElasticConstants& c) {
+         const double mu = c.young / (2 * (1 + c.poisson));
+         return isochor::mooney_rivlin({0.3 * mu, 0.2 * mu, c.poisson});
+       }},
+      {"ogden", [](const ElasticConstants& c) {
+         const double mu = c.young / (2 * (1 + c.poisson));
+         return isochor::ogden({{{0.8 * mu, 1.3}, {-0.24 * mu, -4}}, c.poisson});
+       }}};
   constexpr double young = 2.6e5, strain = 1e-4;
   for (const auto& [name, make] : materials) {
     for (const double nu : {0.0, 0.1, 0.3, 0.45, 0.49, 0.499, 0.4999, 0.5}) {
