@@ -81,6 +81,7 @@ class VolumeEffect final : public EffectSource {
       v.corners = body.reference->corners;
       v.inverse_bulk = def_.hard ? 0 : region.material->inverse_bulk();
       v.shear_modulus = region.material->shear_modulus();
+      v.material = region.material->field_cells() > 0 ? region.material.get() : nullptr;
       list.push_back(v);
     }
     auto instance = std::make_unique<VolumeInstance>();

@@ -41,7 +41,7 @@ std::shared_ptr<RowPool> element_volume_rows(const VolumeRegion& region) {
     const double volume = region.pool->volume(s);
     push_whole_stencil(*rows, s, region.pool->functions());
     finish_row(*rows, volume, region);
-    rows->compliance.push_back({s, s, volume * region.inverse_bulk});
+    rows->compliance.push_back({s, s, volume * region.inverse_bulk / region.stiffness_factor(s)});
   }
   return rows;
 }
@@ -49,13 +49,14 @@ std::shared_ptr<RowPool> element_volume_rows(const VolumeRegion& region) {
 std::shared_ptr<RowPool> total_volume_row(const VolumeRegion& region) {
   auto rows = std::make_shared<VolumeRowPool>(region.name);
   rows->stencil_pool = region.stencil_pool;
-  double volume = 0;
+  double volume = 0, softness = 0;
   for (Index s = 0; s < region.pool->stencils(); ++s) {
     volume += region.pool->volume(s);
+    softness += region.pool->volume(s) / region.stiffness_factor(s);
     push_whole_stencil(*rows, s, region.pool->functions());
   }
   finish_row(*rows, volume, region);
-  rows->compliance.push_back({0, 0, volume * region.inverse_bulk});
+  rows->compliance.push_back({0, 0, softness * region.inverse_bulk});
   return rows;
 }
 
@@ -81,7 +82,7 @@ std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double ta
   std::map<std::pair<Index, Index>, double> compliance;
   const bool per_corner = data.functions == region.corners;
   for (Index s = 0; s < pool.stencils(); ++s) {
-    const double V = pool.volume(s);
+    const double V = pool.volume(s), factor = region.stiffness_factor(s);
     Index row[8];
     for (std::size_t k = 0; k < corners; ++k) row[k] = row_of(pool.nodes()[s][k]);
     for (std::size_t k = 0; k < corners; ++k) {
@@ -94,6 +95,7 @@ std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double ta
         if (row[k] < row[l]) continue;
         double c = mass * region.inverse_bulk;
         if (tau > 0) c += tau / region.shear_modulus * (mass - V / static_cast<double>(corners * corners));
+        c /= factor;
         if (c != 0) compliance[{row[k], row[l]}] += c;
       }
     }

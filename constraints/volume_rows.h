@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/elements/solid_pool.h"
+#include "engine/material_model.h"
 
 namespace isochor {
 
@@ -14,6 +15,12 @@ struct VolumeRegion {
   int corners = 4;           // the first `corners` nodes of a stencil carry the linear pressure
   double inverse_bulk = 0;   // 1/kappa [1/Pa]; 0: hard rows
   double shear_modulus = 1;  // mu [Pa], for the row metric and the stabilization
+  const MaterialModel* material = nullptr;  // where its stiffness varies from cell to cell
+
+  // By how much a stencil is stiffer than the numbers above say.
+  double stiffness_factor(Index stencil) const {
+    return material ? material->stiffness_factor(pool->data().cell[at(stencil)]) : 1;
+  }
 };
 
 // Base of the family: targets are zero, the volume at rest.

@@ -81,7 +81,7 @@ void Assembly::evaluate(Want want, Definiteness definiteness, std::span<const Ve
         part(hessian_, place.hessian, blocks)};
     const std::span<const double> sigma(multiplier_.data() + place.function, stencils * functions);
     parallel_.run(pool.stencils(), pool.grain(), [&](Index b, Index e) {
-      pool.evaluate(StencilRequest{want, definiteness, b, e, x, s.parts().rest, sigma}, out);
+      pool.evaluate(StencilRequest{want, definiteness, b, e, x, s.parts().rest, sigma, increment_}, out);
     });
   }
 }

@@ -13,6 +13,9 @@ class Assembly {
 
   const System& system() const { return *system_; }
 
+  // The increment that evaluations belong to; `before` must live until the next call. {}: none.
+  void set_increment(const StencilIncrement& increment) { increment_ = increment; }
+
   // Evaluates all pools at x with the multipliers of compliant and prescribed rows, up to `want`.
   void evaluate(Want want, Definiteness definiteness, std::span<const Vec3> x, std::span<const double> lambda,
                 std::span<const double> prescribed);
@@ -46,6 +49,7 @@ class Assembly {
 
   std::shared_ptr<const System> system_;
   const Parallel& parallel_;
+  StencilIncrement increment_;
   std::vector<double> energy_, value_, multiplier_;
   std::vector<Vec3> gradient_, jacobian_;
   std::vector<Mat3> hessian_;

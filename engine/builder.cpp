@@ -182,6 +182,23 @@ Result<void> Builder::build_solids() {
   return {};
 }
 
+// The energy of a region for the stencils of a pool: where parameters vary from cell to cell, gathered.
+static std::shared_ptr<const Material> for_stencils(std::shared_ptr<const Material> energy,
+                                                    const MaterialModel& model, SolidData& data) {
+  if (energy && model.field_cells() > 0) {
+    Lists cells = std::move(data.patch_cells);
+    std::vector<double> weight = std::move(data.patch_share);
+    if (weight.empty()) {
+      for (const Index c : data.cell) cells.push({&c, 1});
+      weight.assign(data.cell.size(), 1.0);
+    }
+    if (auto own = energy->gathered(cells, weight)) energy = own;
+  }
+  data.patch_cells = {};
+  data.patch_share = {};
+  return energy;
+}
+
 // Elastic energy and volume functions share a stencil where both live on the cell; edge patches have their
 // own.
 Result<void> Builder::build_region(BodyData& body, RegionData& region) {
@@ -196,10 +213,16 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
     if (!complete) return Error{complete.error()};
     energy = complete.value();
   }
+  const std::size_t fields = region.material->field_cells();
+  if (fields > 0 && fields != at(body.mesh.cell_count())) {
+    return Error{"its material has a field of " + std::to_string(fields) + " entries, the mesh of the body " +
+                 std::to_string(body.mesh.cell_count()) + " cells; give one entry a cell"};
+  }
   add_lumped_mass(*body.reference, parts_.rest, body.global_cells, region.cells, region.density, parts_.mass);
   if (smoothed) {
     auto patches = edge_patch_data(parts_.rest, body.global_cells, region.cells);
     if (!patches) return Error{patches.error()};
+    region.energy = energy = for_stencils(energy, *region.material, patches.value());
     region.elastic_pool =
         add_stencils(std::make_shared<SolidPool>(body.name + "/" + region.name + "/patches",
                                                  std::move(patches).value(), energy, VolumeStrain::linear));
@@ -217,6 +240,7 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
     auto data = solid_data(*body.reference, parts_.rest, body.global_cells, region.cells,
                            wanted ? kind : VolumeFunctions::none);
     if (!data) return Error{data.error()};
+    if (energy && !smoothed) region.energy = energy = for_stencils(energy, *region.material, data.value());
     const Index pool = add_stencils(std::make_shared<SolidPool>(
         body.name + "/" + region.name, std::move(data).value(), energy, static_cast<VolumeStrain>(strain)));
     if (wanted) region.volume_pool[strain] = pool;

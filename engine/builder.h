@@ -81,6 +81,7 @@ struct RegionData {
   std::vector<Index> cells;
   bool bulk_claimed = false;
   // Pools that were built for it.
+  std::shared_ptr<const Material> energy;  // of elastic_pool
   Index elastic_pool = -1;
   std::array<Index, 2> volume_pool{-1, -1};  // by VolumeStrain
   std::array<bool, 2> volume_wanted{};

@@ -1,6 +1,8 @@
 // A hyperelastic energy density, evaluated for several deformation gradients at once.
 #pragma once
 
+#include <memory>
+
 #include "engine/spectrum.h"
 
 namespace isochor {
@@ -33,6 +35,15 @@ class Material {
     (void)policy;
     (void)points;
     (void)response;
+  }
+
+  // The same material with its fields gathered for the stencils of a pool: stencil s takes the mean over the
+  // cells of its list, with weights that sum to one. Null where it has no fields; before, element numbers are
+  // those of the cells of the mesh.
+  virtual std::shared_ptr<const Material> gathered(const Lists& cells, std::span<const double> weight) const {
+    (void)cells;
+    (void)weight;
+    return nullptr;
   }
 };
 

@@ -22,6 +22,13 @@ class MaterialModel {
   virtual double poisson() const = 0;  // small-strain nu
   virtual double young() const = 0;    // small-strain E [Pa]
   virtual bool defined_inverted() const = 0;  // finite energy for J <= 0
+  // Fields of parameters: how many cells they were given for (those of the body's mesh; 0: none), and by how
+  // much a cell is stiffer than the numbers above.
+  virtual std::size_t field_cells() const { return 0; }
+  virtual double stiffness_factor(Index cell) const {
+    (void)cell;
+    return 1;
+  }
 };
 
 }  // namespace isochor

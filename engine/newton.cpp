@@ -652,6 +652,12 @@ NewtonReport Newton::solve(const NewtonProblem& p, const NewtonOptions& options,
     return report;
   };
   if (!all_finite(p)) return fail(NewtonStatus::not_finite);
+  // Results are read without an increment.
+  struct Increment {
+    Assembly& assembly;
+    ~Increment() { assembly.set_increment({}); }
+  } const of_this_solve{assembly_};
+  assembly_.set_increment(p.increment);
   gamma_ = 0.1;
   shift_ = 0;
   for (std::size_t i = 0; i < stiffness_.size(); ++i) {

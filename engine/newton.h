@@ -42,6 +42,7 @@ struct NewtonProblem {
   std::span<const Vec3> position;      // targets of given nodes, one for each System::free_bases() entry
   double t0 = 0, t1 = 0;               // the increment, for rows with a law of their own
   std::span<const double> memory;      // System::memory() numbers: what row pools keep between steps
+  StencilIncrement increment;          // for stencils with damping; none in statics
 };
 
 enum class NewtonStatus : std::uint8_t {

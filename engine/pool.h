@@ -11,6 +11,12 @@
 
 namespace isochor {
 
+// The increment that stencils with damping look back over.
+struct StencilIncrement {
+  double h = 0;                  // [s]; 0: none (statics, results), and damping is zero
+  std::span<const Vec3> before;  // positions of all nodes when it began [m]
+};
+
 // What evaluate() is asked, for stencils [begin, end) of the pool.
 struct StencilRequest {
   Want want = Want::value;
@@ -19,6 +25,7 @@ struct StencilRequest {
   std::span<const Vec3> x;                      // positions of all nodes [m]
   std::span<const Vec3> rest;                   // rest positions of all nodes [m]
   std::span<const double> function_multiplier;  // functions() a stencil: sum over rows of weight * multiplier
+  StencilIncrement increment{};
 };
 
 // Where the answers go: spans over the whole pool. Stencil s owns its own places and nothing else, so

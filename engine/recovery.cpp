@@ -39,12 +39,6 @@ PointState point_state(const SolidPool& pool, const Material* energy, Index sten
   return p;
 }
 
-std::shared_ptr<const Material> region_energy(const RegionData& region) {
-  if (region.bulk_claimed) return region.material->distortional();
-  auto complete = region.material->complete();
-  return complete ? complete.value() : region.material->distortional();
-}
-
 struct CellState {
   Matrix stress = Matrix::Zero();
   double J = 0, volume = 0, pressure = 0, stretch = 0;
@@ -53,7 +47,7 @@ struct CellState {
 // Stress of each patch, then the mean over the six edges of every tet.
 void add_patch_stress(const RecoveryInput& in, const RegionData& region, std::vector<CellState>& cells) {
   const auto& pool = static_cast<const SolidPool&>(*in.parts.stencil_pools[at(region.elastic_pool)]);
-  const auto energy = region_energy(region);
+  const auto& energy = region.energy;
   // Patches come in the order of their edges: both ends are nodes of all their tets.
   std::map<std::pair<Index, Index>, Index> patch_of;
   std::vector<std::pair<Index, Index>> edges;
@@ -100,7 +94,7 @@ void add_region(const RecoveryInput& in, const RegionData& region, std::vector<C
   if (!data) return;
   const SolidPool pool("", std::move(data).value(), nullptr, VolumeStrain::linear);
   const bool smoothed = in.body.element == Element::tet4_edge_smoothed;
-  const auto energy = smoothed ? nullptr : region_energy(region);
+  const auto energy = smoothed ? nullptr : region.energy;
   for (Index s = 0; s < pool.stencils(); ++s) {
     CellState& cell = cells[at(region.cells[at(s)])];
     const double volume = pool.volume(s);

@@ -184,6 +184,7 @@ NewtonReport World::Impl::attempt(double h, int max_iterations, int max_factoriz
   problem.t0 = state.t;
   problem.t1 = t_new;
   problem.memory = state.extra;
+  if (problem.mass_scale > 0) problem.increment = {h, state.x};
   NewtonOptions newton_options;
   newton_options.max_iterations = max_iterations;
   newton_options.max_factorizations = max_factorizations;

@@ -69,7 +69,7 @@ Result<MaterialPtr> make_native(const MaterialDef& def) {
 
 }  // namespace
 
-Result<MaterialPtr> make_material(const MaterialDef& def) {
+static Result<MaterialPtr> make_matrix(const MaterialDef& def) {
   if (auto r = check_constants(def); !r) return Error{r.error()};
   switch (def.law) {
     case MaterialLaw::neo_hookean:
@@ -97,6 +97,12 @@ Result<MaterialPtr> make_material(const MaterialDef& def) {
     default:
       return make_native(def);
   }
+}
+
+Result<MaterialPtr> make_material(const MaterialDef& def) {
+  auto matrix = make_matrix(def);
+  if (!matrix || def.fibers.empty()) return matrix;
+  return with_fibers(std::move(matrix).value(), def.fibers);
 }
 
 }  // namespace isochor

@@ -49,6 +49,7 @@ struct MaterialDef {
   MaterialLaw law = MaterialLaw::neo_hookean;
   ElasticConstants constants;  // of laws with constants of their own, only Poisson's ratio counts
   LawConstants own;
+  std::vector<FiberFamily> fibers;
   double density = 1000;  // [kg/m^3]
 };
 
@@ -139,6 +140,7 @@ struct SceneDef {
   std::vector<CavityDef> cavities;
   std::vector<TractionDef> tractions;
   std::vector<PointForceDef> forces;
+  std::vector<DampingDef> damping;
   Vec3 gravity{};                             // [m/s^2]
   Curve gravity_amount = Curve::constant(1);  // scales it over time
   AnalysisDef analysis;

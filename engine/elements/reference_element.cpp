@@ -186,6 +186,11 @@ Result<SolidData> edge_patch_data(std::span<const Vec3> rest, std::span<const In
       }
     }
     for (Vec3& g : gradient) g = (1 / volume) * g;
+    for (std::size_t m = begin; m < end; ++m) {
+      data.patch_cells.item.push_back(t.cell[at(members[m].tet)]);
+      data.patch_share.push_back(t.weight[at(members[m].tet)] / 6 / volume);
+    }
+    data.patch_cells.offset.push_back(static_cast<Index>(data.patch_cells.item.size()));
     data.nodes.push(nodes);
     data.gradient.insert(data.gradient.end(), gradient.begin(), gradient.end());
     data.weight.push_back(volume);

@@ -22,6 +22,9 @@ struct SolidData {
   int functions = 0;           // volume functions a stencil: integral of N_k Phi(J)
   std::vector<double> shape;   // N_k at the points: [q * functions + k], the same for every stencil
   std::vector<Index> cell;     // cell of the mesh that a stencil stands for (first one for patches)
+  // Of patches, until their fields are gathered: all their cells, and the share of each in the patch.
+  Lists patch_cells;
+  std::vector<double> patch_share;
 };
 
 class SolidPool final : public StencilPool {

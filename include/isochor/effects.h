@@ -82,6 +82,19 @@ struct PointForceDef {
 };
 EffectPtr point_force(PointForceDef def);
 
+// ---- damping
+// ------------------------------------------------------------------------------------------------------
+
+// Damping in dynamics, on top of that of the time scheme; none in statics.
+struct DampingDef {
+  std::string name = "damping";
+  BodyId body{};
+  std::vector<std::string> regions;  // empty: all
+  double viscosity = 0;              // [Pa s]: Kelvin-Voigt stress 2 viscosity dE/dt, E Green's strain
+  double mass_rate = 0;  // [1/s]: force -mass_rate times momentum (the mass part of Rayleigh damping)
+};
+EffectPtr damping(DampingDef def);
+
 // ---- cavity
 // ------------------------------------------------------------------------------------------------------
 

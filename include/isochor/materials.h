@@ -109,4 +109,23 @@ struct OgdenConstants {
 };
 Result<MaterialPtr> ogden(const OgdenConstants& constants);
 
+// ---- additions to a material of any kind
+// ----------------------------------------------------------------------------------
+
+// Fibers that only pull: k1/(2 k2) (exp(k2 E^2) - 1) for E = a . C a - 1 > 0 (Holzapfel, Gasser & Ogden
+// 2000); k2 = 0: k1/2 E^2.
+struct FiberFamily {
+  Vec3 direction{1, 0, 0};  // at rest; any length
+  double k1 = 0;            // [Pa] > 0
+  double k2 = 0;            // [-] >= 0, how soon they stiffen
+  double dispersion = 0;    // 0: all parallel; 1/3: no direction at all
+  // One a cell of the body's mesh, in place of `direction`.
+  std::vector<Vec3> directions;
+};
+Result<MaterialPtr> with_fibers(MaterialPtr matrix, const std::vector<FiberFamily>& families);
+
+// Stiffness that varies from cell to cell at the same Poisson's ratio: energy and bulk modulus times a
+// positive factor, one a cell of the body's mesh.
+Result<MaterialPtr> with_stiffness_field(MaterialPtr base, std::vector<double> factor);
+
 }  // namespace isochor

@@ -17,6 +17,15 @@ void describe(Io& io, OgdenTerm& t) {
 }
 
 template <class Io>
+void describe(Io& io, FiberFamily& f) {
+  io.vector("direction", f.direction, Vec3{1, 0, 0});
+  io.points("directions", f.directions);
+  io.number("k1", f.k1, 0.0);
+  io.number("k2", f.k2, 0.0);
+  io.number("dispersion", f.dispersion, 0.0);
+}
+
+template <class Io>
 void describe(Io& io, MaterialDef& m) {
   io.text("region", m.region);
   io.word("law", m.law, MaterialLaw::neo_hookean);
@@ -36,6 +45,7 @@ void describe(Io& io, MaterialDef& m) {
   io.list("terms", m.own.terms);
   io.number("resistance", m.own.resistance, 0.0);
   io.number("threshold", m.own.threshold, 0.1);
+  io.list("fibers", m.fibers);
   io.number("density", m.density, 1000.0);
 }
 
@@ -151,6 +161,15 @@ void describe(Io& io, PointForceDef& f) {
 }
 
 template <class Io>
+void describe(Io& io, DampingDef& d) {
+  io.text("name", d.name);
+  io.body("body", d.body);
+  io.names("regions", d.regions);
+  io.number("viscosity", d.viscosity, 0.0);
+  io.number("mass_rate", d.mass_rate, 0.0);
+}
+
+template <class Io>
 void describe(Io& io, AnalysisDef& a) {
   io.word("type", a.type, AnalysisType::statics);
   io.number("duration", a.duration, 1.0);
@@ -207,6 +226,7 @@ void describe(Io& io, SceneDef& s) {
   io.list("cavities", s.cavities);
   io.list("tractions", s.tractions);
   io.list("forces", s.forces);
+  io.list("damping", s.damping);
   io.vector("gravity", s.gravity, Vec3{});
   io.curve("gravity_amount", s.gravity_amount, CurveStart::zero, !(s.gravity == Vec3{}));
   io.list("probes", s.probes);

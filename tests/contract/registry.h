@@ -52,6 +52,7 @@ struct SceneCase {
   double stretch = 1;           // of the deformed sample, on top of its waves
   bool stress_free = true;      // no force and zero rows at rest with zero multipliers
   bool rigid_invariant = true;  // the potential does not see rigid motions
+  bool numbered_cells = false;  // has a field by cell number: renumbering cells makes another scene
 };
 std::vector<SceneCase> scene_cases();
 

@@ -229,6 +229,46 @@ void add_native(std::vector<MaterialCase>& out) {
       out);
 }
 
+// Two families, one of them dispersed, in a neo-Hookean matrix; and everything times a factor.
+void add_fibers(std::vector<MaterialCase>& out) {
+  isochor::FiberFamily a, b;
+  a.direction = {1, 2, 2};
+  a.k1 = 0.8;
+  b.direction = {0, 3, -4};
+  b.k1 = 0.5;
+  b.k2 = 0.7;
+  b.dispersion = 0.1;
+  const auto fibers = [](const Gradient9& F, double x, double y, double z, double d, double k1, double k2) {
+    const double n = x * x + y * y + z * z, v[3] = {x, y, z};
+    HyperDual along;
+    for (std::size_t i = 0; i < 3; ++i) {
+      along += square(F[3 * i] * v[0] + F[3 * i + 1] * v[1] + F[3 * i + 2] * v[2]);
+    }
+    const HyperDual E = d * trace_C(F) + (1 - 3 * d) / n * along - 1.0;
+    if (E.a <= 0) return HyperDual();
+    return k2 > 0 ? k1 / (2 * k2) * (exp(k2 * E * E) - 1.0) : 0.5 * k1 * E * E;
+  };
+  const auto energy = [=](const Gradient9& F) {
+    return 0.5 * kMu * (trace_C(F) - 3.0) - kMu * log(determinant(F)) + fibers(F, 1, 2, 2, 0, 0.8, 0) +
+           fibers(F, 0, 3, -4, 0.1, 0.5, 0.7);
+  };
+  const MaterialPtr matrix = made(isochor::neo_hookean(constants()));
+  MaterialCase c;
+  c.name = "neo_hookean with fibers";
+  c.covers = {"materials/fibers"};
+  c.material = made(isochor::with_fibers(matrix, {a, b}))->distortional();
+  c.energy = energy;
+  c.isotropic = false;
+  out.push_back(c);
+  c.name = "neo_hookean with fibers, times 1.7";
+  c.covers = {"materials/stiffness_field"};
+  const std::vector<double> factor(isochor::kLanes, 1.7);
+  c.material =
+      made(isochor::with_stiffness_field(made(isochor::with_fibers(matrix, {a, b})), factor))->distortional();
+  c.energy = [=](const Gradient9& F) { return 1.7 * energy(F); };
+  out.push_back(c);
+}
+
 void add_element_guard(std::vector<MaterialCase>& out) {
   constexpr double b = 1.3, threshold = 0.5;
   MaterialCase c;
@@ -265,6 +305,7 @@ std::vector<MaterialCase> material_cases() {
   add_stvk(out);
   add_linear(out);
   add_native(out);
+  add_fibers(out);
   add_element_guard(out);
   return out;
 }

@@ -143,6 +143,46 @@ void add_supports_and_loads(std::vector<SceneCase>& out) {
   out.push_back(loads);
 }
 
+// Without an increment, as here, damping is nothing; its own derivatives are held by numbers.damping.
+void add_damping(std::vector<SceneCase>& out) {
+  isochor::DampingDef def;
+  def.viscosity = 0.4;
+  def.mass_rate = 2;
+  for (const auto& [element, name] : kElements) {
+    SceneCase c{name + ", damping",          {"constraints/damping"}, solid_mesh(element), element,
+                {{"", material(0.3), 1000}}, {isochor::damping(def)}};
+    out.push_back(c);
+  }
+}
+
+// Fibers along a field of directions, in a matrix whose stiffness varies from cell to cell.
+void add_fields(std::vector<SceneCase>& out) {
+  for (const auto& [element, name] : kElements) {
+    const Mesh mesh = solid_mesh(element);
+    const auto cells = static_cast<std::size_t>(mesh.cell_count());
+    isochor::FiberFamily along, mixed;
+    along.k1 = 3;
+    along.direction = {1, 0.2, 0};
+    mixed.k1 = 1;
+    mixed.k2 = 2;
+    mixed.dispersion = 0.1;
+    std::vector<double> factor;
+    for (std::size_t k = 0; k < cells; ++k) {
+      mixed.directions.push_back({1, 0.1 * static_cast<double>(k % 7), 0.3});
+      factor.push_back(1 + 0.05 * static_cast<double>(k));
+    }
+    auto matrix = isochor::with_stiffness_field(material(0.4), factor).value();
+    SceneCase c{name + ", fields",
+                {"materials/fibers", "materials/stiffness_field"},
+                mesh,
+                element,
+                {{"", isochor::with_fibers(matrix, {along, mixed}).value(), 1000}},
+                {volume_rows(VolumeSpace::node, VolumeStrainKind::linear)}};
+    c.numbered_cells = true;
+    out.push_back(c);
+  }
+}
+
 }  // namespace
 
 std::vector<SceneCase> scene_cases() {
@@ -150,6 +190,8 @@ std::vector<SceneCase> scene_cases() {
   add_volumes(out);
   add_cavities(out);
   add_supports_and_loads(out);
+  add_damping(out);
+  add_fields(out);
   return out;
 }
 

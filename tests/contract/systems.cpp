@@ -260,6 +260,7 @@ TEST_CASE("a scene does not see rigid motions") {
 
 TEST_CASE("a scene does not see the numbers of nodes, the order of cells or of their nodes") {
   for (const auto& c : test::scene_cases()) {
+    if (c.numbered_cells) continue;
     INFO(c.name);
     const SceneProbe scene(c);
     auto other = c;

@@ -1,0 +1,136 @@
+// What a material costs at one point: nanoseconds per deformation gradient for psi, P, A, and A made definite
+// together with a volume row; and singular values alone. One thread, batches of eight, data in cache.
+//
+//   isochor_bench_materials [--repeats N]
+//
+// Prints minimum and median over the repeats, the first one left out, and a checksum of the answers.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "engine/material_model.h"
+#include "isochor/materials.h"
+
+namespace {
+
+using namespace isochor;
+
+constexpr int kBatches = 64;  // 512 points: 300 kB of answers
+
+std::vector<PointBatch> points() {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(-0.3, 0.3);
+  std::vector<PointBatch> out(kBatches);
+  for (PointBatch& b : out) {
+    for (int l = 0; l < kLanes; ++l) {
+      for (int i = 0; i < 9; ++i) b.F[i][l] = (i % 4 == 0 ? 1 : 0) + unit(random);
+      b.element[l] = 0;
+    }
+  }
+  return out;
+}
+
+struct Timing {
+  double least, median;  // [ns] a point
+};
+
+Timing measure(int repeats, const std::function<void()>& all) {
+  std::vector<double> times;
+  for (int r = 0; r <= repeats; ++r) {
+    const auto start = std::chrono::steady_clock::now();
+    all();
+    const std::chrono::duration<double, std::nano> d = std::chrono::steady_clock::now() - start;
+    if (r > 0) times.push_back(d.count() / (kBatches * kLanes));
+  }
+  std::sort(times.begin(), times.end());
+  return {times.front(), times[times.size() / 2]};
+}
+
+MaterialPtr must(Result<MaterialPtr> r) {
+  if (!r) {
+    std::fprintf(stderr, "%s\n", r.error().c_str());
+    std::exit(2);
+  }
+  return std::move(r).value();
+}
+
+std::vector<MaterialPtr> shelf() {
+  ElasticConstants c;
+  c.young = 1e5;
+  c.poisson = 0.45;
+  return {must(neo_hookean(c)),
+          must(neo_hookean_ogden(c)),
+          must(stable_neo_hookean(c)),
+          must(stable_neo_hookean_barrier(c)),
+          must(isochoric_neo_hookean(c)),
+          must(isochoric_extended(c)),
+          must(mooney_rivlin({2e4, 1e4, 0.45})),
+          must(fung({2e4, 0.3, 4e4, 0.45})),
+          must(arruda_boyce({3e4, 0.02, 0.001, 0.45})),
+          must(ogden({{{6e4, 1.3}, {1e3, 5}, {-1e4, -2}}, 0.45})),
+          must(corotated(c)),
+          must(fixed_corotated(c)),
+          must(stvk(c)),
+          must(stvk_resistant(c, 1e6)),
+          must(linear(c)),
+          must(with_fibers(must(neo_hookean(c)), {{{1, 1, 0}, 5e4, 1.5, 0, {}}}))};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int repeats = 200;
+  for (int i = 1; i + 1 < argc; ++i) {
+    if (std::strcmp(argv[i], "--repeats") == 0) repeats = std::max(1, std::atoi(argv[i + 1]));
+  }
+  const std::vector<PointBatch> in = points();
+  std::vector<ResponseBatch> out(kBatches);
+  std::vector<Svd3> svds(kBatches);
+  const auto decompose = [&](int b) {
+    Lanes F[9];
+    for (int i = 0; i < 9; ++i) F[i] = load(in[static_cast<std::size_t>(b)].F[i]);
+    svd3(F, svds[static_cast<std::size_t>(b)]);
+  };
+  const Timing svd = measure(repeats, [&] {
+    for (int b = 0; b < kBatches; ++b) decompose(b);
+  });
+  std::printf("ns a point, least (median) of %d; %zu-byte vectors, %s\n", repeats, sizeof(Lanes),
+              __VERSION__);
+  std::printf("%-28s %13.1f (%.1f)\n", "singular values", svd.least, svd.median);
+  std::printf("%-28s %14s %14s %14s %18s\n", "complete energies", "psi", "P", "A", "A, definite");
+  for (const MaterialPtr& model : shelf()) {
+    const auto material = model->complete().value();
+    Timing t[4];
+    for (const Want want : {Want::value, Want::gradient, Want::hessian}) {
+      t[static_cast<int>(want)] = measure(repeats, [&] {
+        for (std::size_t b = 0; b < kBatches; ++b) material->evaluate(want, in[b], out[b]);
+      });
+    }
+    t[3] = measure(repeats, [&] {
+      for (std::size_t b = 0; b < kBatches; ++b) {
+        decompose(static_cast<int>(b));
+        Spectrum spectrum;
+        Lanes A[45];
+        material->spectrum(in[b], svds[b], spectrum);
+        add_volume(svds[b], broadcast(0), broadcast(-3e4), spectrum);
+        make_definite(Definiteness::projected, spectrum);
+        assemble(svds[b], spectrum, A);
+        for (int i = 0; i < 45; ++i) store(A[i], out[b].A[i]);
+        material->add_anisotropic(Definiteness::projected, in[b], out[b]);
+      }
+    });
+    double sum = 0;
+    for (const ResponseBatch& r : out) {
+      for (int l = 0; l < kLanes; ++l) sum += r.A[0][l];
+    }
+    std::printf("%-28s", std::string(model->name()).c_str());
+    for (const Timing& x : t) std::printf(" %6.1f (%5.1f)", x.least, x.median);
+    std::printf("   sum %.9g\n", sum);
+  }
+  return 0;
+}
