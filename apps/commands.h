@@ -25,7 +25,15 @@ struct RunArguments {
   bool quiet = false, json = false;
 };
 
+struct StudyArguments {
+  std::string study;
+  std::string folder;  // empty: out/study/NAME, with _quick
+  bool quick = false, fresh = false, list = false, quiet = false;
+  int threads = 0;
+};
+
 int run(const RunArguments& arguments);
+int study(const StudyArguments& arguments);
 int show(const std::string& scene, const std::vector<std::string>& overrides);
 int list(bool json);
 int check(const std::vector<std::string>& meshes, double scale, bool json);

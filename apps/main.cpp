@@ -33,11 +33,24 @@ void add_run(CLI::App& top, app::RunArguments& a) {
   c->footer(kRunFooter);
 }
 
+void add_study(CLI::App& top, app::StudyArguments& a) {
+  CLI::App* c = top.add_subcommand("study", "Sweep scenes and measure: accuracy for time, locking and more");
+  c->add_option("study", a.study, "Name of a study (see --list)");
+  c->add_flag("--list", a.list, "List the studies");
+  c->add_flag("--quick", a.quick, "A smaller sweep, one repeat");
+  c->add_option("--out", a.folder, "Folder of the outputs; default out/study/NAME")->type_name("DIR");
+  c->add_flag("--fresh", a.fresh, "Measure all again; otherwise what this build has measured is kept");
+  c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
+  c->add_flag("--quiet", a.quiet, "Print errors only");
+  c->footer("A study that is stopped (Ctrl-C) leaves what it has; the same command goes on from there.");
+}
+
 int dispatch(int argc, char** argv) {
   CLI::App top{"Isochor: soft incompressible bodies, pneumatic robots at Poisson's ratio 0.5"};
   top.name("isochor");
   top.require_subcommand(1);
   app::RunArguments run;
+  app::StudyArguments study;
   bool json = false;
   double scale = 1;
   std::vector<std::string> meshes, overrides;
@@ -45,6 +58,7 @@ int dispatch(int argc, char** argv) {
   CLI::App* list = top.add_subcommand("list", "List the scenes of the library");
   list->add_flag("--json", json, "As JSON");
   add_run(top, run);
+  add_study(top, study);
   CLI::App* check =
       top.add_subcommand("check", "Check mesh files: counts and findings; exit 2 if one is not usable");
   check->add_option("mesh", meshes, "Mesh files (.msh, .vtk, .vtu, .node/.ele, .mesh)")->required();
@@ -69,6 +83,7 @@ int dispatch(int argc, char** argv) {
   if (check->parsed()) return app::check(meshes, scale, json);
   if (show->parsed()) return app::show(scene, overrides);
   if (version->parsed()) return app::version(json);
+  if (top.got_subcommand("study")) return app::study(study);
   return app::run(run);
 }
 

@@ -33,15 +33,6 @@ Result<SceneDef> find(const std::string& name, const Overrides& overrides) {
                "; a scene file ends in .json"};
 }
 
-std::string duration(double s) {
-  char text[32];
-  if (s < 60)
-    std::snprintf(text, sizeof text, "%.1fs", s);
-  else
-    std::snprintf(text, sizeof text, "%dm%02ds", static_cast<int>(s) / 60, static_cast<int>(s) % 60);
-  return text;
-}
-
 class Progress {
  public:
   void header() const {

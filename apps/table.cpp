@@ -41,4 +41,13 @@ std::string number(double value, int digits) {
   return text;
 }
 
+std::string duration(double s) {
+  char text[32];
+  if (s < 60)
+    std::snprintf(text, sizeof text, "%.1fs", s);
+  else
+    std::snprintf(text, sizeof text, "%dm%02ds", static_cast<int>(s) / 60, static_cast<int>(s) % 60);
+  return text;
+}
+
 }  // namespace isochor::app

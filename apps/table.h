@@ -25,4 +25,7 @@ class Table {
 // `digits` significant digits, without trailing zeros.
 std::string number(double value, int digits = 5);
 
+// Seconds as "12.3s" or "4m05s".
+std::string duration(double seconds);
+
 }  // namespace isochor::app

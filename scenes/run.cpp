@@ -124,6 +124,7 @@ void Run::record(int step, const StepReport& report) {
   result_.records.push_back(std::move(r));
   result_.newton_iterations += report.iterations;
   result_.factorizations += report.factorizations;
+  result_.solves += report.iterations + report.corrections;
   result_.state_hash = world.state_hash();
   result_.wall_s = seconds_since(start_);
   add(result_.stages, report.seconds);
@@ -188,6 +189,7 @@ void Run::march(RunOutputs* outputs) {
     } else {
       result_.newton_iterations += report.iterations;
       result_.factorizations += report.factorizations;
+      result_.solves += report.iterations + report.corrections;
       add(result_.stages, report.seconds);
     }
     if (!over && step == plan.steps) {

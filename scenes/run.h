@@ -68,6 +68,7 @@ struct RunResult {
   int steps_asked = 0;
   std::vector<StepRecord> records;
   int newton_iterations = 0, factorizations = 0;
+  int solves = 0;  // with the factors of an iteration: the iteration itself and corrections
   double wall_s = 0;
   StageTimes stages;
   WorldSize size;

@@ -1,4 +1,4 @@
-// The page without its data, put into the library by cmake/Viewer.cmake.
+// The pages without their data, put into the library by cmake/Viewer.cmake.
 #pragma once
 
 #include <string>
@@ -7,5 +7,6 @@ namespace isochor::page {
 
 // Empty when node and npm were missing at build time.
 const std::string& results_template();
+const std::string& charts_template();
 
 }  // namespace isochor::page

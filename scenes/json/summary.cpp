@@ -65,6 +65,7 @@ std::string summary_json(const RunResult& r) {
   j["steps_asked"] = r.steps_asked;
   j["newton_iterations"] = r.newton_iterations;
   j["factorizations"] = r.factorizations;
+  j["solves"] = r.solves;
   j["wall_s"] = r.wall_s;
   j["stage_s"] = stages(r.stages);
   j["unknowns"] = {{"displacement", r.size.displacement_unknowns}, {"multipliers", r.size.multipliers}};

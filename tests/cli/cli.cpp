@@ -73,7 +73,7 @@ const char* const kBlock = R"({
 
 TEST_CASE("help, list and version") {
   Shell shell;
-  for (const char* command : {"--help", "run --help", "list --help", "check --help", "version --help", "list",
+  for (const char* command : {"--help", "run --help", "list --help", "check --help", "version --help", "study --help", "study --list", "list",
                               "list --json", "version", "version --json", "show finger"}) {
     INFO(command);
     const Outcome o = shell.run(command);
@@ -90,7 +90,7 @@ TEST_CASE("wrong arguments are bad input") {
   for (const char* command :
        {"", "fly", "run --threads many", "run --threads -1", "run --budget 0", "run nosuchscene",
         "run no/such/file.json", "run finger --set", "run finger --set x", "check", "check no.msh",
-        "run finger --bogus", "run finger --set cavities[0].presure=1"}) {
+        "run finger --bogus", "study", "study nosuchstudy", "study accuracy --threads -1", "run finger --set cavities[0].presure=1"}) {
     INFO(command);
     const Outcome o = shell.run(command);
     CHECK(o.code == 2);

@@ -1,0 +1,86 @@
+// study: sweeps with their measurements.
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+
+#include "apps/commands.h"
+#include "apps/table.h"
+#include "studies/run_study.h"
+
+namespace isochor::app {
+
+namespace {
+
+std::atomic<int> g_signals{0};
+
+// The first signal ends the study in good order, the second at once.
+void on_signal(int) {
+  if (g_signals.fetch_add(1) > 0) _exit(interrupted);
+}
+
+void print_cell(const studies::CellProgress& p) {
+  const std::string place = std::to_string(p.done) + "/" + std::to_string(p.total);
+  std::string what = p.cell.good() ? (p.kept ? "kept" : number(p.cell.seconds, 3) + " s") : p.cell.status;
+  if (p.cell.error) what += ", error " + number(100 * *p.cell.error, 3) + " %";
+  std::printf("%9s  %-52s %-28s ETA %s\n", place.c_str(), p.cell.id.c_str(), what.c_str(),
+              duration(p.remaining).c_str());
+  std::fflush(stdout);
+}
+
+int list_studies() {
+  Table table({"study", "what it answers", "cells", "quick"});
+  table.numbers_from(2, 3);
+  for (const studies::Study& s : studies::studies()) {
+    table.add({std::string(s.name), std::string(s.question), std::to_string(s.cells(false).size()),
+               std::to_string(s.cells(true).size())});
+  }
+  std::printf("%s\nRun one with `isochor study NAME`.\n", table.text().c_str());
+  return success;
+}
+
+Result<const studies::Study*> find(const std::string& name) {
+  if (const studies::Study* study = studies::find_study(name)) return study;
+  std::string known;
+  for (const auto& s : studies::studies()) known += (known.empty() ? "" : ", ") + std::string(s.name);
+  return Error{"there is no study named \"" + name + "\"; there are " + known};
+}
+
+}  // namespace
+
+int study(const StudyArguments& a) {
+  if (a.list) return list_studies();
+  if (a.study.empty()) {
+    std::fprintf(stderr, "isochor: study: name one, or ask for --list\n");
+    return bad_input;
+  }
+  const auto found = find(a.study);
+  if (!found) {
+    std::fprintf(stderr, "isochor: %s\n", found.error().c_str());
+    return bad_input;
+  }
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  studies::StudyOptions options;
+  options.folder = a.folder.empty() ? "out/study/" + a.study + (a.quick ? "_quick" : "") : a.folder;
+  options.quick = a.quick;
+  options.fresh = a.fresh;
+  options.threads = a.threads;
+  options.stop = [] { return g_signals.load() > 0; };
+  if (!a.quiet) options.on_cell = print_cell;
+  const studies::StudyResult result = studies::run_study(*found.value(), options);
+  if (result.status == studies::StudyStatus::failed) {
+    std::fprintf(stderr, "isochor: %s\n", result.reason.c_str());
+    return bad_input;
+  }
+  if (!a.quiet) {
+    std::printf("\n%s: %zu of %zu cells, %zu kept from before, %zu without an answer, %s\n", a.study.c_str(),
+                result.cells.size(), result.total, result.kept, result.not_good,
+                duration(result.seconds).c_str());
+    std::printf("outputs in %s/: index.html, results.csv, results.json, tables.md\n", options.folder.c_str());
+  }
+  return result.status == studies::StudyStatus::interrupted ? interrupted : success;
+}
+
+}  // namespace isochor::app

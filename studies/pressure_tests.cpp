@@ -1,0 +1,160 @@
+#include "studies/pressure_tests.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "engine/assembly.h"
+#include "engine/builder.h"
+#include "engine/parallel.h"
+#include "engine/system.h"
+
+namespace isochor::studies {
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+
+// The saddle-point matrix of a cube at rest, mu = 1, cut into its blocks.
+struct Blocks {
+  Matrix stiffness, rows, compliance;  // K, G, C
+};
+
+Result<Blocks> blocks(const Formulation& f, int n, double bulk, double stabilization) {
+  Builder builder;
+  BodyDef body;
+  BoxMeshDef box;
+  box.divisions = {n, n, n};
+  auto mesh = box_mesh(box);
+  if (!mesh) return Error{mesh.error()};
+  body.mesh = std::move(mesh).value();
+  body.element = f.element;
+  ElasticConstants constants;
+  constants.mu = 1;
+  constants.bulk = bulk;
+  auto material = neo_hookean(constants);
+  if (!material) return Error{material.error()};
+  body.materials = {{"", std::move(material).value(), 1}};
+  if (auto r = builder.add_body(std::move(body)); !r) return Error{r.error()};
+  VolumeDef rows;
+  rows.space = f.space;
+  rows.stabilization = stabilization;
+  DirichletDef wall;
+  wall.where.surfaces = {"x0"};
+  std::vector<std::unique_ptr<EffectInstance>> instances;
+  const std::vector<EffectPtr> effects{volume(rows), dirichlet(wall)};
+  for (const auto& e : effects) {
+    if (auto r = e->check(); !r) return Error{r.error()};
+    if (auto r = e->declare(builder); !r) return Error{r.error()};
+  }
+  if (auto r = builder.build_solids(); !r) return Error{r.error()};
+  for (const auto& e : effects) {
+    auto instance = e->build(builder);
+    if (!instance) return Error{instance.error()};
+    instances.push_back(std::move(instance).value());
+  }
+  auto parts = builder.finish(true);
+  if (!parts) return Error{parts.error()};
+  auto compiled = System::compile(std::move(parts).value());
+  if (!compiled) return Error{compiled.error()};
+  const auto system = std::move(compiled).value();
+
+  const TbbParallel one(1);
+  Assembly assembly(system, one);
+  const std::vector<double> lambda(static_cast<std::size_t>(system->rows()), 0.0);
+  const std::vector<double> prescribed(static_cast<std::size_t>(system->prescribed_rows()), 0.0);
+  assembly.evaluate(Want::hessian, Definiteness::exact, system->parts().rest, lambda, prescribed);
+  const SymmetricPattern& pattern = system->kkt();
+  std::vector<double> values(static_cast<std::size_t>(pattern.nonzeros()));
+  assembly.kkt_values(0, values);
+  const Index free = system->free_unknowns(), all = pattern.size;
+  Blocks b{Matrix::Zero(free, free), Matrix::Zero(all - free, free), Matrix::Zero(all - free, all - free)};
+  for (Index c = 0; c < all; ++c) {
+    for (std::int64_t k = pattern.column_start[static_cast<std::size_t>(c)];
+         k < pattern.column_start[static_cast<std::size_t>(c) + 1]; ++k) {
+      const Index r = pattern.row[static_cast<std::size_t>(k)];
+      const double v = values[static_cast<std::size_t>(k)];
+      if (r < free) {
+        b.stiffness(r, c) = b.stiffness(c, r) = v;
+      } else if (c < free) {
+        b.rows(r - free, c) = v;
+      } else {
+        b.compliance(r - free, c - free) = b.compliance(c - free, r - free) = -v;
+      }
+    }
+  }
+  return b;
+}
+
+// Neighbors across faces: for every inner face the two cells that share it.
+std::vector<std::array<std::size_t, 2>> inner_faces(const Mesh& mesh) {
+  constexpr std::size_t kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+  const auto stride = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
+  std::map<std::array<Index, 3>, std::size_t> open;
+  std::vector<std::array<std::size_t, 2>> pairs;
+  for (std::size_t c = 0; c * stride < mesh.cells.size(); ++c) {
+    for (const auto& face : kFaces) {
+      std::array<Index, 3> nodes{};
+      for (std::size_t k = 0; k < 3; ++k) nodes[k] = mesh.cells[c * stride + face[k]];
+      std::sort(nodes.begin(), nodes.end());
+      const auto [it, first] = open.emplace(nodes, c);
+      if (!first) pairs.push_back({it->second, c});
+    }
+  }
+  return pairs;
+}
+
+}  // namespace
+
+Probe inf_sup_probe(const Formulation& f, int n) {
+  return [&f, n](const SceneDef&, int) -> Result<Numbers> {
+    // C = M_p / kappa without stabilization gives the mass matrix of the pressures; hard rows give the rest.
+    auto mass = blocks(f, n, 1, 0);
+    if (!mass) return Error{mass.error()};
+    auto hard = blocks(f, n, std::numeric_limits<double>::infinity(), f.stabilization);
+    if (!hard) return Error{hard.error()};
+    const Blocks& h = hard.value();
+    const Eigen::LLT<Matrix> cholesky(h.stiffness);
+    if (cholesky.info() != Eigen::Success) return Error{"the stiffness at rest is not positive definite"};
+    const Matrix half = cholesky.matrixL().solve(h.rows.transpose());
+    const Matrix schur = half.transpose() * half + h.compliance;
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Matrix> eigen(schur, mass.value().compliance,
+                                                                 Eigen::EigenvaluesOnly);
+    if (eigen.info() != Eigen::Success) return Error{"the eigenvalues did not converge"};
+    Numbers out;
+    const auto beta = [](double v) { return std::sqrt(std::max(0.0, v)); };
+    double zero = 0;
+    for (Eigen::Index k = 0; k < eigen.eigenvalues().size(); ++k) zero += beta(eigen.eigenvalues()[k]) < 1e-6;
+    out["beta"] = zero > 0 ? 0 : beta(eigen.eigenvalues()[0]);
+    out["zero modes"] = zero;
+    out["rows"] = static_cast<double>(h.rows.rows());
+    out["displacements"] = static_cast<double>(h.rows.cols());
+    return out;
+  };
+}
+
+Result<Numbers> pressure_roughness(const SceneDef& scene, int threads) {
+  auto built = build(scene, {threads});
+  if (!built) return Error{built.error()};
+  World& world = built.value().world;
+  const StepPlan plan = plan_steps(scene.analysis);
+  for (int step = 0; step < plan.steps; ++step) {
+    const StepReport report = world.advance(plan.h);
+    if (report.status != StepStatus::converged) return Error{report.reason};
+  }
+  const BodyId body = built.value().bodies[0];
+  const std::vector<double> pressure = world.fields(body).cell_pressure;
+  double jumps = 0, magnitude = 0;
+  const auto faces = inner_faces(world.mesh(body));
+  for (const auto& [a, b] : faces) {
+    const double mean = 0.5 * (pressure[a] + pressure[b]), jump = pressure[a] - pressure[b];
+    jumps += jump * jump;
+    magnitude += mean * mean + 0.25 * jump * jump;
+  }
+  return Numbers{{"roughness", std::sqrt(jumps / std::max(magnitude, 1e-300))}};
+}
+
+}  // namespace isochor::studies

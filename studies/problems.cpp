@@ -1,0 +1,103 @@
+#include "studies/problems.h"
+
+#include <algorithm>
+
+namespace isochor::studies {
+
+namespace {
+
+constexpr std::string_view kTaylorHood =
+    "Taylor-Hood (dolfinx 0.5.2, deal.II 9.4), extrapolated; docs/reference.md";
+constexpr std::string_view kClosedForm = "closed form; docs/reference.md";
+const std::vector<Problem>& table() {
+  static const std::vector<Problem> problems{
+      {"cantilever",
+       "Cantilever, a tenth of gravity",
+       cantilever_tenth,
+       "tip down",
+       -0.4763,
+       1e-4 / 0.4763,
+       kTaylorHood,
+       {std::array{10, 1, 1}, std::array{20, 2, 2}, std::array{40, 4, 4}, std::array{60, 6, 6}},
+       {std::array{5, 1, 1}, std::array{10, 1, 1}, std::array{20, 2, 2}, std::array{30, 3, 3}}},
+      {"cook",
+       "Cook's membrane, 3D",
+       cook,
+       "edge middle up",
+       8.510,
+       0.0015 / 8.510,
+       kTaylorHood,
+       {"cook3d_1", "cook3d_2", "cook3d_3"},
+       {"cook3d_1_tet10", "cook3d_2_tet10"}},
+      {"cook_plane",
+       "Cook's membrane, plane strain",
+       cook_plane,
+       "edge middle up",
+       6.962,
+       0.001 / 6.962,
+       kTaylorHood,
+       {"cook_plane_1", "cook_plane_2"},
+       {"cook_plane_tet10"},
+       2},
+      {"thick_tube",
+       "Thick tube, volume given",
+       thick_tube_volume,
+       "pressure at stretch 2",
+       0.5740535723065197,
+       0,
+       kClosedForm,
+       {"thick_tube"},
+       {"thick_tube_tet10"},
+       2},
+      {"thick_sphere",
+       "Thick sphere, volume given",
+       thick_sphere_volume,
+       "pressure at stretch 2",
+       0.8069266031066276,
+       0,
+       kClosedForm,
+       {"thick_sphere"},
+       {"thick_sphere_tet10"}},
+      {"torsion",
+       "Torsion of a cylinder",
+       torsion,
+       "torque",
+       1.570796326794897,
+       0,
+       kClosedForm,
+       {"torsion_cylinder"},
+       {"torsion_cylinder_tet10"}},
+  };
+  return problems;
+}
+
+}  // namespace
+
+std::span<const Problem> problems() {
+  return table();
+}
+
+const Problem& problem(std::string_view name) {
+  const auto all = problems();
+  const auto it = std::find_if(all.begin(), all.end(), [&](const Problem& p) { return p.name == name; });
+  return it == all.end() ? all.front() : *it;
+}
+
+std::size_t level_count(const Problem& p, const Formulation& f) {
+  return f.quadratic() ? p.quadratic.size() : p.linear.size();
+}
+
+SceneDef make_scene(const Problem& p, const Formulation& f, std::size_t level) {
+  const LevelMesh& mesh = f.quadratic() ? p.quadratic[level] : p.linear[level];
+  SceneVariant variant;
+  if (const auto* name = std::get_if<std::string_view>(&mesh)) variant.mesh = *name;
+  variant.element = f.element;
+  SceneDef scene = p.make(variant);
+  if (const auto* divisions = std::get_if<std::array<int, 3>>(&mesh)) {
+    if (auto* box = std::get_if<BoxMeshDef>(&scene.bodies[0].mesh)) box->divisions = *divisions;
+  }
+  apply(f, scene);
+  return scene;
+}
+
+}  // namespace isochor::studies

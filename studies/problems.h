@@ -1,0 +1,37 @@
+// Problems with a known answer, on several meshes.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "scenes/library.h"
+#include "studies/formulations.h"
+
+namespace isochor::studies {
+
+// A mesh of scenes/meshes by name, or the divisions of a box.
+using LevelMesh = std::variant<std::string_view, std::array<int, 3>>;
+
+struct Problem {
+  std::string_view name, title;
+  SceneDef (*make)(const SceneVariant&);
+  std::string_view metric;  // of the scene
+  double reference = 0;
+  double uncertainty = 0;  // of the reference, relative
+  std::string_view source;
+  std::vector<LevelMesh> linear, quadratic;  // coarse to fine, for Tet4 and Tet10
+  int dimension = 3;                         // 2: a slab one element thick, refined in its plane
+};
+
+std::span<const Problem> problems();
+const Problem& problem(std::string_view name);  // must exist
+
+std::size_t level_count(const Problem& p, const Formulation& f);
+// The problem on one of its meshes; `level` starts at 0, the coarsest.
+SceneDef make_scene(const Problem& p, const Formulation& f, std::size_t level);
+
+}  // namespace isochor::studies
