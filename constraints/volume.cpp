@@ -41,6 +41,11 @@ class VolumeEffect final : public EffectSource {
       return Error{who() + "stabilization = " + std::to_string(def_.stabilization) +
                    "; it must be zero (off) or positive, 1 is the default"};
     }
+    if (def_.lumped_compliance && (def_.space != VolumeSpace::node || def_.hard)) {
+      return Error{
+          who() +
+          "lumped_compliance is for compliant rows per node; drop it, or use space node without hard"};
+    }
     return {};
   }
 
@@ -101,20 +106,37 @@ class VolumeEffect final : public EffectSource {
     switch (def_.space) {
       case VolumeSpace::node: {
         std::vector<Index> nodes;
-        const Index pool =
-            builder.add_rows(nodal_volume_rows(region, equal_order ? def_.stabilization : 0, &nodes));
+        const auto rows = nodal_volume_rows(region, equal_order ? def_.stabilization : 0, &nodes);
+        if (def_.lumped_compliance) lump(*rows);
+        const Index pool = add(builder, rows);
         if (def_.strain == VolumeStrainKind::linear && def_.carries_bulk) {
           instance.nodal.push_back({pool, std::move(nodes)});
         }
         break;
       }
       case VolumeSpace::element:
-        builder.add_rows(element_volume_rows(region));
+        add(builder, element_volume_rows(region));
         break;
       case VolumeSpace::body:
-        builder.add_rows(total_volume_row(region));
+        add(builder, total_volume_row(region));
         break;
     }
+  }
+
+  Index add(Builder& builder, const std::shared_ptr<RowPool>& rows) const {
+    rows->treatment = def_.treatment;
+    return builder.add_rows(rows);
+  }
+
+  // Row sums on the diagonal. Those of the stabilization are zero.
+  static void lump(RowPool& rows) {
+    std::vector<double> sum(at(rows.rows()), 0);
+    for (const ComplianceEntry& e : rows.compliance) {
+      sum[at(e.row)] += e.value;
+      if (e.row != e.col) sum[at(e.col)] += e.value;
+    }
+    rows.compliance.clear();
+    for (Index r = 0; r < rows.rows(); ++r) rows.compliance.push_back({r, r, sum[at(r)]});
   }
 
   VolumeDef def_;

@@ -258,9 +258,9 @@ void Assembly::kkt_values(double mass_scale, std::span<double> values) const {
   const Gather& g = s.jacobian_gather();
   parallel_.run(as_index(g.count()), kGatherGrain, [&](Index begin, Index end) {
     for (Index d = begin; d < end; ++d) {
-      const Index node = s.jacobian_ends()[at(d)][1];
+      const auto [row, node] = s.jacobian_ends()[at(d)];
       const Index kj = first[at(node) + 1] - first[at(node)];
-      if (kj == 0) continue;
+      if (kj == 0 || s.row_unknown()[at(row)] < 0) continue;
       Vec3 sum{};
       const auto to = static_cast<std::size_t>(g.offset[at(d) + 1]);
       for (auto k = static_cast<std::size_t>(g.offset[at(d)]); k < to; ++k) {
@@ -273,10 +273,28 @@ void Assembly::kkt_values(double mass_scale, std::span<double> values) const {
     }
   });
   const auto places = s.compliance_place();
-  for (const std::int64_t p : places) values[static_cast<std::size_t>(p)] = 0;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    values[static_cast<std::size_t>(places[k])] -= s.compliance()[k].value;
+  for (const std::int64_t p : places) {
+    if (p >= 0) values[static_cast<std::size_t>(p)] = 0;
   }
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    if (places[k] >= 0) values[static_cast<std::size_t>(places[k])] -= s.compliance()[k].value;
+  }
+}
+
+void Assembly::row_jacobian(std::span<Vec3> jacobian) const {
+  const System& s = *system_;
+  const Gather& g = s.jacobian_gather();
+  parallel_.run(as_index(g.count()), kGatherGrain, [&](Index begin, Index end) {
+    for (Index d = begin; d < end; ++d) {
+      Vec3 sum{};
+      const auto to = static_cast<std::size_t>(g.offset[at(d) + 1]);
+      for (auto k = static_cast<std::size_t>(g.offset[at(d)]); k < to; ++k) {
+        sum += g.weight[k] * jacobian_[static_cast<std::size_t>(g.source[k])];
+      }
+      const Index b = s.basis_of()[at(s.jacobian_ends()[at(d)][1])];
+      jacobian[at(d)] = b >= 0 ? transposed_times(s.free_bases()[at(b)].directions, sum) : sum;
+    }
+  });
 }
 
 std::span<const double> Assembly::function_multipliers(Index pool) const {

@@ -1,22 +1,11 @@
 #include "engine/newton.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 namespace isochor {
 
 namespace {
-
-class Stopwatch {
- public:
-  explicit Stopwatch(double& total) : total_(total), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() { total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  double& total_;
-  std::chrono::steady_clock::time_point start_;
-};
 
 double norm(const Vec3& v) {
   return std::sqrt(dot(v, v));
@@ -82,28 +71,13 @@ std::string_view to_string(NewtonStatus status) {
   return "unknown";
 }
 
-StageSeconds& StageSeconds::operator+=(const StageSeconds& o) {
-  analyze += o.analyze;
-  evaluate += o.evaluate;
-  gather += o.gather;
-  factor += o.factor;
-  solve += o.solve;
-  line_search += o.line_search;
-  return *this;
-}
-
 Newton::Newton(std::shared_ptr<const System> system, const Parallel& parallel,
                std::unique_ptr<LinearSolver> solver)
-    : system_(std::move(system)),
-      parallel_(parallel),
-      solver_(std::move(solver)),
-      assembly_(system_, parallel) {
+    : system_(std::move(system)), assembly_(system_, parallel), kkt_(system_, parallel, std::move(solver)) {
   const System& s = *system_;
-  const std::size_t n = at(s.nodes()), m = at(s.rows()), size = at(s.kkt().size);
-  values_.resize(static_cast<std::size_t>(s.kkt().nonzeros()));
-  scale_.resize(size);
-  rhs_.resize(size);
-  solution_.resize(size);
+  const std::size_t n = at(s.nodes()), m = at(s.rows());
+  row_rhs_.resize(m);
+  node_rhs_.resize(n);
   theta_.resize(m);
   row_work_.resize(m);
   lambda_new_.resize(m);
@@ -167,30 +141,6 @@ void Newton::choose_clamped(std::span<const double> lambda) {
     clamped_[r] = trial <= lower[r] || trial >= upper[r];
     if (clamped_[r]) bound_[r] = trial <= lower[r] ? lower[r] : upper[r];
     any_clamped_ = any_clamped_ || clamped_[r];
-  }
-}
-
-// Tangents of the laws replace the compliance of their rows; a row held at a bound is taken out of the
-// system, with a diagonal that keeps the inertia.
-void Newton::write_bounds_and_laws() {
-  const System& s = *system_;
-  for (const auto& [index, entry] : s.laws()) {
-    const std::size_t entries = s.parts().row_pools[at(index)]->compliance.size();
-    for (std::size_t k = entry; k < entry + entries; ++k) {
-      values_[static_cast<std::size_t>(s.compliance_place()[k])] -= tangent_[k];
-    }
-  }
-  if (!any_clamped_) return;
-  const SymmetricPattern& kkt = s.kkt();
-  const Index free = s.free_unknowns();
-  const auto held = [&](Index i) { return i >= free && clamped_[at(i - free)] != 0; };
-  for (Index c = 0; c < kkt.size; ++c) {
-    const auto to = static_cast<std::size_t>(kkt.column_start[at(c) + 1]);
-    for (auto k = static_cast<std::size_t>(kkt.column_start[at(c)]); k < to; ++k) {
-      const Index i = kkt.row[k];
-      if (!held(i) && !held(c)) continue;
-      values_[k] = i == c ? -s.row_metric()[at(i - free)] : 0;
-    }
   }
 }
 
@@ -375,64 +325,27 @@ bool Newton::factor(const NewtonProblem& p, std::span<const Vec3> x, std::span<c
 }
 
 bool Newton::factor_shifted(double mass_scale, double shift, NewtonReport& report) {
-  const System& s = *system_;
-  {
-    const Stopwatch watch(seconds_.gather);
-    assembly_.kkt_values(mass_scale, values_);
-    write_bounds_and_laws();
-    const auto first = s.first_unknown();
-    for (Index i = 0; i < s.nodes(); ++i) {
-      double k = 0;
-      for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
-        k = std::max(k, std::abs(values_[static_cast<std::size_t>(s.diagonal_place()[at(c)])]));
-      }
-      const double reference = std::max(k, 0.01 * stiffness_[at(i)]);
-      for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
-        scale_[at(c)] = reference > 0 ? 1 / std::sqrt(reference) : 1;
-        values_[static_cast<std::size_t>(s.diagonal_place()[at(c)])] += shift * reference;
-      }
-    }
-    for (Index r = 0; r < s.rows(); ++r)
-      scale_[at(s.free_unknowns() + r)] = 1 / std::sqrt(s.row_metric()[at(r)]);
-    const SymmetricPattern& kkt = s.kkt();
-    parallel_.run(kkt.size, 1024, [&](Index b, Index e) {
-      for (Index c = b; c < e; ++c) {
-        const auto to = static_cast<std::size_t>(kkt.column_start[at(c) + 1]);
-        for (auto k = static_cast<std::size_t>(kkt.column_start[at(c)]); k < to; ++k) {
-          values_[k] *= scale_[at(c)] * scale_[at(kkt.row[k])];
-        }
-      }
-    });
-  }
-  if (!analyzed_) {
-    const Stopwatch watch(seconds_.analyze);
-    const FactorReport f = solver_->analyze(s.kkt());
-    ++analyses_;
-    if (f.status != FactorStatus::ok) {
-      report.status =
-          f.status == FactorStatus::out_of_memory ? NewtonStatus::out_of_memory : NewtonStatus::singular;
-      report.message = f.message;
-      return false;
-    }
-    analyzed_ = true;
-  }
-  const Stopwatch watch(seconds_.factor);
-  const FactorReport f = solver_->factor(values_);
+  Kkt::Values values;
+  values.mass_scale = mass_scale;
+  values.shift = shift;
+  values.stiffness = stiffness_;
+  values.tangent = tangent_;
+  if (any_clamped_) values.clamped = clamped_;
+  const Kkt::Outcome f = kkt_.factor(assembly_, values, seconds_);
   ++report.factorizations;
-  factor_nonzeros_ = f.factor_nonzeros;
-  report.negative_pivots = f.negative_pivots;
-  if (f.status == FactorStatus::out_of_memory) {
-    report.status = NewtonStatus::out_of_memory;
+  report.negative_pivots = f.negative;
+  if (f.status == FactorStatus::out_of_memory) report.status = NewtonStatus::out_of_memory;
+  if (f.status != FactorStatus::ok) {
     report.message = f.message;
+    return false;
   }
-  if (f.status != FactorStatus::ok) return false;
-  return f.negative_pivots < 0 || f.negative_pivots == s.rows();
+  return f.negative < 0 || f.negative == system_->rows();
 }
 
-// Solves for (dx, dlambda); prescribed coordinates move by their whole gap.
+// Solves for (dx, dlambda); prescribed coordinates move by their whole gap, multipliers held at a bound by
+// the rest of their way there.
 bool Newton::direction(std::span<const double> lambda, NewtonReport& report) {
   const System& s = *system_;
-  const auto first = s.first_unknown();
   if (has_gap_) {
     assembly_.hessian_times(gap_, node_work_);
     assembly_.jacobian_times(gap_, row_work_);
@@ -440,51 +353,26 @@ bool Newton::direction(std::span<const double> lambda, NewtonReport& report) {
     std::fill(node_work_.begin(), node_work_.end(), Vec3{});
     std::fill(row_work_.begin(), row_work_.end(), 0.0);
   }
+  for (std::size_t r = 0; r < theta_.size(); ++r) row_rhs_[r] = -(theta_[r] + row_work_[r]);
   if (any_clamped_) {
     for (std::size_t r = 0; r < clamped_.size(); ++r) to_bound_[r] = clamped_[r] ? bound_[r] - lambda[r] : 0;
     assembly_.constraint_force(to_bound_, reaction_);
     for (std::size_t i = 0; i < reaction_.size(); ++i) node_work_[i] += reaction_[i];
-  }
-  for (Index i = 0; i < s.nodes(); ++i) {
-    Vec3 q = -(r_[at(i)] + node_work_[at(i)]);
-    const Index b = s.basis_of()[at(i)];
-    if (b >= 0) q = transposed_times(s.free_bases()[at(b)].directions, q);
-    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) rhs_[at(c)] = scale_[at(c)] * q[c - first[at(i)]];
-  }
-  const Index free = s.free_unknowns();
-  for (Index r = 0; r < s.rows(); ++r) {
-    rhs_[at(free + r)] = -scale_[at(free + r)] * (theta_[at(r)] + row_work_[at(r)]);
-  }
-  if (any_clamped_) {
-    // The multipliers that move to a bound are known: C dlambda_known joins the right-hand side of the other
-    // rows here, G^T dlambda_known did so above.
     std::fill(row_work_.begin(), row_work_.end(), 0.0);
     add_compliance(s, 1, to_bound_, row_work_);
-    for (Index r = 0; r < s.rows(); ++r) {
-      const double d = s.row_metric()[at(r)];
-      if (clamped_[at(r)])
-        rhs_[at(free + r)] = -scale_[at(free + r)] * d * to_bound_[at(r)];
+    for (std::size_t r = 0; r < clamped_.size(); ++r) {
+      if (clamped_[r])
+        row_rhs_[r] = -s.row_metric()[r] * to_bound_[r];
       else
-        rhs_[at(free + r)] += scale_[at(free + r)] * row_work_[at(r)];
+        row_rhs_[r] += row_work_[r];
     }
   }
-  SolveReport solved;
-  {
-    const Stopwatch watch(seconds_.solve);
-    solved = solver_->solve(rhs_, solution_);
-  }
-  report.linear_residual = solved.residual;
-  for (Index i = 0; i < s.nodes(); ++i) {
-    Vec3 q{};
-    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c)
-      q[c - first[at(i)]] = scale_[at(c)] * solution_[at(c)];
-    const Index b = s.basis_of()[at(i)];
-    dx_[at(i)] = (b >= 0 ? s.free_bases()[at(b)].directions * q : q) + gap_[at(i)];
-  }
-  for (Index r = 0; r < s.rows(); ++r) {
-    lambda_new_[at(r)] = lambda[at(r)] + scale_[at(free + r)] * solution_[at(free + r)];
-  }
-  return solved.ok && std::all_of(dx_.begin(), dx_.end(), finite);
+  for (std::size_t i = 0; i < r_.size(); ++i) node_rhs_[i] = -(r_[i] + node_work_[i]);
+  const bool ok = kkt_.solve(node_rhs_, row_rhs_, dx_, lambda_new_, seconds_);
+  report.linear_residual = kkt_.residual();
+  for (std::size_t i = 0; i < dx_.size(); ++i) dx_[i] += gap_[i];
+  for (std::size_t r = 0; r < theta_.size(); ++r) lambda_new_[r] += lambda[r];
+  return ok && std::all_of(dx_.begin(), dx_.end(), finite);
 }
 
 // Slope of the merit along the direction; raises gamma until it is safely negative. Also leaves the reactions

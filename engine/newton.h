@@ -16,7 +16,7 @@
 #include <atomic>
 #include <functional>
 
-#include "engine/assembly.h"
+#include "engine/kkt.h"
 
 namespace isochor {
 
@@ -57,12 +57,6 @@ enum class NewtonStatus : std::uint8_t {
 };
 std::string_view to_string(NewtonStatus status);
 
-// Seconds by stage.
-struct StageSeconds {
-  double analyze = 0, evaluate = 0, gather = 0, factor = 0, solve = 0, line_search = 0;
-  StageSeconds& operator+=(const StageSeconds& o);
-};
-
 struct NewtonReport {
   NewtonStatus status = NewtonStatus::converged;
   int iterations = 0, factorizations = 0, trials = 0;
@@ -90,10 +84,10 @@ class Newton {
 
   const Assembly& assembly() const { return assembly_; }
   Assembly& assembly() { return assembly_; }
-  LinearSolver& linear_solver() { return *solver_; }
+  LinearSolver& linear_solver() { return kkt_.linear_solver(); }
   const StageSeconds& seconds() const { return seconds_; }
-  std::int64_t factor_nonzeros() const { return factor_nonzeros_; }
-  int analyses() const { return analyses_; }
+  std::int64_t factor_nonzeros() const { return kkt_.factor_nonzeros(); }
+  int analyses() const { return kkt_.analyses(); }
   // Internal minus load forces, plus inertia, at the last evaluation: zero at free coordinates in balance,
   // the support force on the body at given ones [N].
   std::span<const Vec3> residual() const { return r_; }
@@ -112,7 +106,6 @@ class Newton {
   void calibrate();
   double apply_laws(const NewtonProblem& p, std::span<const double> lambda, bool tangents);
   void choose_clamped(std::span<const double> lambda);
-  void write_bounds_and_laws();
   void clamp(std::span<double> lambda) const;
   bool correct(const NewtonProblem& p, const NewtonOptions& options, std::span<Vec3> x,
                std::span<double> lambda, NewtonReport& report);
@@ -128,26 +121,22 @@ class Newton {
   bool search(const NewtonProblem& p, std::span<Vec3> x, std::span<double> lambda, NewtonReport& report);
 
   std::shared_ptr<const System> system_;
-  const Parallel& parallel_;
-  std::unique_ptr<LinearSolver> solver_;
   Assembly assembly_;
+  Kkt kkt_;
   StageSeconds seconds_;
-  std::int64_t factor_nonzeros_ = 0;
-  int analyses_ = 0;
-  bool analyzed_ = false, has_gap_ = false, full_step_ = false;
+  bool has_gap_ = false, full_step_ = false;
   double shift_ = 0;       // the last one that mended the inertia in this solve
   double law_energy_ = 0;  // of the rows with a law of their own, at the last residual
   bool any_clamped_ = false;
   double gamma_ = 0.1;  // more would follow the volume too closely, less would lose descent; raised as needed
 
-  std::vector<double> values_, scale_, rhs_, solution_, theta_, row_work_, stiffness_, magnitude_,
-      rest_stiffness_;
+  std::vector<double> theta_, row_work_, row_rhs_, stiffness_, magnitude_, rest_stiffness_;
   std::vector<double> lambda_new_, lambda_trial_, prescribed_phi_;
   // Rows with laws: strain and tangent (one for each compliance entry). Rows with bounds: which of them the
   // matrix holds at a bound, and by how much their multipliers move there.
   std::vector<double> strain_, tangent_, bound_, to_bound_;
   std::vector<std::uint8_t> clamped_;
-  std::vector<Vec3> r_, dx_, gap_, node_work_, x_trial_, reaction_;
+  std::vector<Vec3> r_, dx_, gap_, node_work_, node_rhs_, x_trial_, reaction_;
 };
 
 }  // namespace isochor

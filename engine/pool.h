@@ -105,6 +105,7 @@ class RowPool {
   Lists map;                   // per row: function numbers
   std::vector<double> weight;  // parallel to map.item
   RowLaw law = RowLaw::compliant;
+  RowTreatment treatment = RowTreatment::automatic;
   std::vector<ComplianceEntry> compliance;  // lower triangle; none: hard
   // Row metric D > 0: phi^2 / D is an energy of the size that distortion costs (shear modulus times volume
   // for a volume row). It weighs the rows in the merit function and scales the linear system; the solution

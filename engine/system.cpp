@@ -62,6 +62,7 @@ class SystemCompiler {
     gather_jacobian();
     collect_compliance();
     collect_bounds_and_memory();
+    if (auto r = treat_rows(); !r) return Error{r.error()};
     build_kkt();
     locate_entries();
     group_unknowns();
@@ -306,6 +307,82 @@ class SystemCompiler {
     }
   }
 
+  // Which rows are unknowns of the matrix. Automatic rows are kept; the ordering puts those over everything
+  // last, which costs about what a border does.
+  Result<void> treat_rows() {
+    constexpr Index border_limit = 64;
+    s_->row_unknown_.assign(at(s_->rows_), -1);
+    s_->diagonal_compliance_.assign(at(s_->rows_), 0);
+    for (std::size_t k = 0; k < s_->compliance_.size(); ++k) {
+      const ComplianceEntry& e = s_->compliance_[k];
+      if (e.row == e.col) s_->diagonal_compliance_[at(e.row)] = k;
+    }
+    s_->row_jacobian_begin_.assign(at(s_->rows_) + 1, 0);
+    for (const auto& [row, node] : s_->jacobian_ends_) ++s_->row_jacobian_begin_[at(row) + 1];
+    for (std::size_t r = 0; r < at(s_->rows_); ++r)
+      s_->row_jacobian_begin_[r + 1] += s_->row_jacobian_begin_[r];
+    for (std::size_t p = 0; p < s_->parts_.row_pools.size(); ++p) {
+      const RowPool& pool = *s_->parts_.row_pools[p];
+      if (pool.law != RowLaw::compliant) continue;
+      const std::string who = "rows \"" + std::string(pool.name()) + "\": ";
+      const bool out = pool.treatment == RowTreatment::condensed || pool.treatment == RowTreatment::bordered;
+      if (out && (!pool.lower.empty() || !pool.upper.empty())) {
+        return Error{who +
+                     "rows with bounds change between free and held, so they stay in the saddle point; use "
+                     "treatment saddle or automatic"};
+      }
+      if (pool.treatment == RowTreatment::condensed) {
+        if (auto r = check_condensed(pool, who); !r) return r;
+      }
+      if (pool.treatment == RowTreatment::bordered &&
+          static_cast<Index>(s_->bordered_rows_.size()) + pool.rows() > border_limit) {
+        return Error{who + std::to_string(pool.rows()) +
+                     " rows to border; each costs a solve a factorization, so " +
+                     std::to_string(border_limit) + " in a scene are the limit; use treatment saddle"};
+      }
+      auto& list = pool.treatment == RowTreatment::condensed
+                       ? s_->condensed_rows_
+                       : (pool.treatment == RowTreatment::bordered ? s_->bordered_rows_ : s_->kept_rows_);
+      for (Index r = 0; r < pool.rows(); ++r) list.push_back(s_->first_row_[p] + r);
+    }
+    for (std::size_t k = 0; k < s_->kept_rows_.size(); ++k) {
+      s_->row_unknown_[at(s_->kept_rows_[k])] = s_->free_unknowns() + static_cast<Index>(k);
+    }
+    std::vector<Index> border(at(s_->rows_), -1);
+    for (std::size_t k = 0; k < s_->bordered_rows_.size(); ++k)
+      border[at(s_->bordered_rows_[k])] = static_cast<Index>(k);
+    for (std::size_t k = 0; k < s_->compliance_.size(); ++k) {
+      const ComplianceEntry& e = s_->compliance_[k];
+      if (border[at(e.row)] >= 0) s_->border_compliance_.push_back({k, border[at(e.row)], border[at(e.col)]});
+    }
+    return {};
+  }
+
+  static Result<void> check_condensed(const RowPool& pool, const std::string& who) {
+    if (pool.has_law()) {
+      return Error{who + "a row with a law of its own is not condensed; use treatment saddle or bordered"};
+    }
+    std::vector<double> diagonal(at(pool.rows()), 0);
+    for (const ComplianceEntry& e : pool.compliance) {
+      if (e.row == e.col) diagonal[at(e.row)] += e.value;
+      if (e.row != e.col && e.value != 0) {
+        return Error{
+            who + "their compliance couples rows " + std::to_string(e.col) + " and " + std::to_string(e.row) +
+            " (a consistent or stabilized one does), so they cannot be condensed one by one; use treatment "
+            "saddle, or a lumped compliance, which is another model"};
+      }
+    }
+    for (Index r = 0; r < pool.rows(); ++r) {
+      if (diagonal[at(r)] > 0) continue;
+      return Error{who + "row " + std::to_string(r) + " is hard (compliance " +
+                   std::to_string(diagonal[at(r)]) +
+                   "), so there is nothing to condense it with: K + G^T G / C needs C > 0; use treatment "
+                   "saddle, or nu < "
+                   "0.5"};
+    }
+    return {};
+  }
+
   void build_kkt() {
     std::vector<Contribution> entries;  // key: (column << 32) | row
     const Index free = s_->free_unknowns();
@@ -317,15 +394,21 @@ class SystemCompiler {
         }
       }
     }
+    const auto& unknown = s_->row_unknown_;
     for (const auto& [row, node] : s_->jacobian_ends_) {
+      if (unknown[at(row)] < 0) continue;
       for (Index c = first[at(node)]; c < first[at(node) + 1]; ++c)
-        entries.push_back({key_of(c, free + row), 0, 1});
+        entries.push_back({key_of(c, unknown[at(row)]), 0, 1});
     }
-    for (const ComplianceEntry& e : s_->compliance_)
-      entries.push_back({key_of(free + e.col, free + e.row), 0, 1});
+    for (const ComplianceEntry& e : s_->compliance_) {
+      if (unknown[at(e.row)] >= 0) entries.push_back({key_of(unknown[at(e.col)], unknown[at(e.row)]), 0, 1});
+    }
+    for_condensed_columns([&](Index column, Index from, Index to) {
+      for (Index r = from; r < to; ++r) entries.push_back({key_of(column, r), 0, 1});
+    });
     sort_contributions(entries);
     SymmetricPattern& kkt = s_->kkt_;
-    kkt.size = free + s_->rows_;
+    kkt.size = free + static_cast<Index>(s_->kept_rows_.size());
     kkt.column_start.assign(static_cast<std::size_t>(kkt.size) + 1, 0);
     for (std::size_t i = 0; i < entries.size(); ++i) {
       if (i > 0 && entries[i].key == entries[i - 1].key) continue;
@@ -333,6 +416,25 @@ class SystemCompiler {
       ++kkt.column_start[static_cast<std::size_t>(entries[i].key >> 32) + 1];
     }
     for (std::size_t c = 0; c < at(kkt.size); ++c) kkt.column_start[c + 1] += kkt.column_start[c];
+  }
+
+  // Visits the columns of all blocks that condensed rows add to the stiffness: unknown of the column, and the
+  // rows [from, to) of it. Nodes of a row ascend, so the blocks are those of the lower triangle.
+  template <class Visit>
+  void for_condensed_columns(Visit visit) const {
+    const auto& first = s_->first_unknown_;
+    for (const Index row : s_->condensed_rows_) {
+      const auto begin = s_->row_jacobian_begin_[at(row)], end = s_->row_jacobian_begin_[at(row) + 1];
+      for (auto a = begin; a < end; ++a) {
+        const Index i = s_->jacobian_ends_[a][1];
+        for (auto b = begin; b <= a; ++b) {
+          const Index j = s_->jacobian_ends_[b][1];
+          for (Index c = first[at(j)]; c < first[at(j) + 1]; ++c) {
+            visit(c, i == j ? c : first[at(i)], first[at(i) + 1]);
+          }
+        }
+      }
+    }
   }
 
   std::int64_t place(Index row, Index col) const {
@@ -344,14 +446,14 @@ class SystemCompiler {
 
   void locate_entries() {
     const auto& first = s_->first_unknown_;
-    const Index free = s_->free_unknowns();
     const auto locate = [&](std::vector<std::int64_t>& places, Index row_or_node, Index node, bool is_row) {
       for (Index k = 0; k < 3; ++k) {
         const Index c = first[at(node)] + k;
         if (c >= first[at(node) + 1]) {
           places.push_back(-1);
         } else if (is_row) {
-          places.push_back(place(free + row_or_node, c));
+          const Index u = s_->row_unknown_[at(row_or_node)];
+          places.push_back(u < 0 ? -1 : place(u, c));
         } else if (row_or_node == node) {
           places.push_back(place(c, c));
         } else {
@@ -363,8 +465,12 @@ class SystemCompiler {
     for (const auto& [i, j] : s_->block_nodes_) locate(s_->block_place_, i, j, false);
     for (const auto& [row, node] : s_->jacobian_ends_) locate(s_->jacobian_place_, row, node, true);
     for (const ComplianceEntry& e : s_->compliance_) {
-      s_->compliance_place_.push_back(place(free + e.row, free + e.col));
+      const Index row = s_->row_unknown_[at(e.row)], col = s_->row_unknown_[at(e.col)];
+      s_->compliance_place_.push_back(row < 0 ? -1 : place(row, col));
     }
+    for_condensed_columns([&](Index column, Index from, Index to) {
+      s_->condensed_place_.push_back(from < to ? place(from, column) : -1);
+    });
     for (Index i = 0; i < s_->kkt_.size; ++i) s_->diagonal_place_.push_back(s_->kkt_.column_start[at(i)]);
   }
 
@@ -387,6 +493,7 @@ class SystemCompiler {
     for (Index r = 0; r < s_->rows_; ++r) {
       const std::size_t begin = e;
       while (e < s_->jacobian_ends_.size() && s_->jacobian_ends_[e][0] == r) ++e;
+      if (s_->row_unknown_[at(r)] < 0) continue;
       Index best = -1;
       std::int64_t best_count = 0;
       if (static_cast<std::int64_t>(e - begin) <= local_limit) {
@@ -405,7 +512,7 @@ class SystemCompiler {
         rows_in.push_back(0);
       }
       ++rows_in[at(best)];
-      kkt.group[at(s_->free_unknowns() + r)] = best;
+      kkt.group[at(s_->row_unknown_[at(r)])] = best;
     }
     kkt.groups = groups;
   }

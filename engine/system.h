@@ -50,6 +50,24 @@ class System {
   std::uint64_t layout() const { return layout_; }
   double length() const { return length_; }  // diagonal of the rest bounding box [m]
 
+  // Rows by treatment. Kept rows are unknowns of kkt(), in order behind the displacements; row_unknown() is
+  // their index there, -1 for the others.
+  std::span<const Index> row_unknown() const { return row_unknown_; }
+  std::span<const Index> kept_rows() const { return kept_rows_; }
+  std::span<const Index> condensed_rows() const { return condensed_rows_; }
+  std::span<const Index> bordered_rows() const { return bordered_rows_; }
+  // jacobian_ends() of row r: [row_jacobian_begin()[r], row_jacobian_begin()[r + 1]).
+  std::span<const std::size_t> row_jacobian_begin() const { return row_jacobian_begin_; }
+  // Where the columns of the blocks of condensed rows go, in the order of rows and of their pairs of nodes.
+  std::span<const std::int64_t> condensed_place() const { return condensed_place_; }
+  // compliance() entry of each row's own diagonal, and the entries between bordered rows.
+  std::span<const std::size_t> diagonal_compliance() const { return diagonal_compliance_; }
+  struct BorderCompliance {
+    std::size_t entry = 0;
+    Index row = 0, col = 0;  // into bordered_rows()
+  };
+  std::span<const BorderCompliance> border_compliance() const { return border_compliance_; }
+
   const SymmetricPattern& kkt() const { return kkt_; }
   std::span<const PoolPlace> places() const { return places_; }
   const PoolPlace& totals() const { return totals_; }
@@ -65,7 +83,8 @@ class System {
   const Gather& block_gather() const { return block_gather_; }  // node pair <- Hessian slots, ~s: transposed
   const Gather& jacobian_gather() const { return jacobian_gather_; }  // (row, node) <- Jacobian slots
 
-  // Places in kkt() of the first row of each column of a block; three a block, -1 beyond the free columns.
+  // Places in kkt() of the first row of each column of a block; three a block, -1 beyond the free columns,
+  // and for rows that are not kept.
   std::span<const std::int64_t> block_place() const { return block_place_; }
   std::span<const std::int64_t> jacobian_place() const { return jacobian_place_; }
   std::span<const std::array<Index, 2>> block_nodes() const { return block_nodes_; }
@@ -111,6 +130,10 @@ class System {
   std::vector<ComplianceEntry> compliance_;
   std::vector<double> row_metric_, row_measure_, row_lower_, row_upper_;
   std::vector<LawPlace> laws_;
+  std::vector<Index> row_unknown_, kept_rows_, condensed_rows_, bordered_rows_;
+  std::vector<std::size_t> row_jacobian_begin_, diagonal_compliance_;
+  std::vector<std::int64_t> condensed_place_;
+  std::vector<BorderCompliance> border_compliance_;
   Index memory_ = 0;
   std::vector<Index> first_memory_;
 };

@@ -38,6 +38,11 @@ struct VolumeDef {
   // True: these rows carry the bulk modulus and the elements keep only the distortional energy. False: the
   // rows come on top of other rows or of the complete one-field energy.
   bool carries_bulk = true;
+  // How the linear systems take the rows; refused with the reason where it cannot be (docs/solver.md).
+  RowTreatment treatment = RowTreatment::automatic;
+  // Nodal rows: the compliance M_p/kappa lumped to its row sums, without stabilization, so that the rows can
+  // be condensed. Another model than the consistent one; not for hard rows.
+  bool lumped_compliance = false;
 };
 EffectPtr volume(VolumeDef def);
 

@@ -85,4 +85,12 @@ class [[nodiscard]] Result<void> {
   bool failed_ = false;
 };
 
+// How the linear systems take a row. All give the same answer, to solver accuracy.
+enum class RowTreatment : std::uint8_t {
+  automatic,  // what docs/solver.md says
+  saddle,     // an unknown of the matrix, with a negative pivot
+  condensed,  // eliminated beforehand, K += G^T G / C: local rows with a positive, diagonal compliance
+  bordered,   // eliminated around the factorization: a few rows over many nodes, without fill in the matrix
+};
+
 }  // namespace isochor

@@ -95,6 +95,8 @@ void describe(Io& io, VolumeRows& v) {
   io.number("stabilization", v.def.stabilization, 1.0);
   io.flag("hard", v.def.hard, false);
   io.flag("carries_bulk", v.def.carries_bulk, true);
+  io.word("treatment", v.def.treatment, RowTreatment::automatic);
+  io.flag("lumped_compliance", v.def.lumped_compliance, false);
 }
 
 template <class Io>

@@ -35,6 +35,8 @@ ISOCHOR_WORDS(BulkChoice, 2, {BulkChoice::consistent, "consistent"},
               {BulkChoice::bulk_modulus, "bulk_modulus"});
 ISOCHOR_WORDS(VolumeStrainKind, 2, {VolumeStrainKind::linear, "linear"},
               {VolumeStrainKind::logarithmic, "logarithmic"});
+ISOCHOR_WORDS(RowTreatment, 4, {RowTreatment::automatic, "automatic"}, {RowTreatment::saddle, "saddle"},
+              {RowTreatment::condensed, "condensed"}, {RowTreatment::bordered, "bordered"});
 ISOCHOR_WORDS(CavityControl, 3, {CavityControl::pressure, "pressure"}, {CavityControl::volume, "volume"},
               {CavityControl::volume_ratio, "volume_ratio"});
 ISOCHOR_WORDS(AnalysisType, 2, {AnalysisType::statics, "static"}, {AnalysisType::dynamics, "dynamic"});

@@ -1,0 +1,331 @@
+#include "engine/kkt.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace isochor {
+
+namespace {
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+Stopwatch::Stopwatch(double& total) : total_(total), start_(now()) {}
+Stopwatch::~Stopwatch() {
+  total_ += now() - start_;
+}
+
+StageSeconds& StageSeconds::operator+=(const StageSeconds& o) {
+  analyze += o.analyze;
+  evaluate += o.evaluate;
+  gather += o.gather;
+  factor += o.factor;
+  solve += o.solve;
+  line_search += o.line_search;
+  return *this;
+}
+
+Kkt::Kkt(std::shared_ptr<const System> system, const Parallel& parallel, std::unique_ptr<LinearSolver> solver)
+    : system_(std::move(system)), parallel_(parallel), solver_(std::move(solver)) {
+  const System& s = *system_;
+  const std::size_t size = at(s.kkt().size), border = s.bordered_rows().size();
+  values_.resize(static_cast<std::size_t>(s.kkt().nonzeros()));
+  scale_.resize(size);
+  rhs_.resize(size);
+  solution_.resize(size);
+  if (!s.condensed_rows().empty() || border > 0) row_jacobian_.resize(s.jacobian_ends().size());
+  condensed_compliance_.resize(s.condensed_rows().size());
+  condensed_part_.resize(s.condensed_rows().size());
+  border_solution_.resize(size * border);
+  schur_.resize(border * border);
+  schur_vectors_.resize(border * border);
+  border_value_.resize(border);
+  border_work_.resize(border);
+}
+
+double Kkt::compliance_of(const Values& values, std::size_t entry) const {
+  const double constant = system_->compliance()[entry].value;
+  for (const auto& law : system_->laws()) {
+    const std::size_t count = system_->parts().row_pools[at(law.row_pool)]->compliance.size();
+    if (entry >= law.first_entry && entry < law.first_entry + count) return values.tangent[entry];
+  }
+  return constant;
+}
+
+// Unknowns are scaled to a unit diagonal: nodes by their stiffness, rows by their metric. The shift comes
+// with it, relative to the stiffness before rows are condensed into it.
+void Kkt::scale_unknowns(const Values& values) {
+  const System& s = *system_;
+  const auto first = s.first_unknown();
+  for (Index i = 0; i < s.nodes(); ++i) {
+    double k = 0;
+    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
+      k = std::max(k, std::abs(values_[static_cast<std::size_t>(s.diagonal_place()[at(c)])]));
+    }
+    const double reference = std::max(k, 0.01 * values.stiffness[at(i)]);
+    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
+      scale_[at(c)] = reference > 0 ? 1 / std::sqrt(reference) : 1;
+      values_[static_cast<std::size_t>(s.diagonal_place()[at(c)])] += values.shift * reference;
+    }
+  }
+  for (Index r = 0; r < s.rows(); ++r) {
+    const Index u = s.row_unknown()[at(r)];
+    if (u >= 0) scale_[at(u)] = 1 / std::sqrt(s.row_metric()[at(r)]);
+  }
+  if (!s.condensed_rows().empty()) {
+    add_condensed(values);
+    for (Index c = 0; c < s.free_unknowns(); ++c) {
+      const double d = std::abs(values_[static_cast<std::size_t>(s.diagonal_place()[at(c)])]);
+      scale_[at(c)] = std::min(scale_[at(c)], d > 0 ? 1 / std::sqrt(d) : 1);
+    }
+  }
+}
+
+// K += G_r^T G_r / C_r for every condensed row, in the order of the rows.
+void Kkt::add_condensed(const Values& values) {
+  const System& s = *system_;
+  const auto first = s.first_unknown();
+  std::size_t place = 0;
+  for (std::size_t k = 0; k < s.condensed_rows().size(); ++k) {
+    const Index row = s.condensed_rows()[k];
+    const double c = compliance_of(values, s.diagonal_compliance()[at(row)]);
+    condensed_compliance_[k] = c;
+    const auto begin = s.row_jacobian_begin()[at(row)], end = s.row_jacobian_begin()[at(row) + 1];
+    for (std::size_t a = begin; a < end; ++a) {
+      const Index i = s.jacobian_ends()[a][1], ki = first[at(i) + 1] - first[at(i)];
+      for (std::size_t b = begin; b <= a; ++b) {
+        const Index j = s.jacobian_ends()[b][1], kj = first[at(j) + 1] - first[at(j)];
+        for (Index q = 0; q < kj; ++q, ++place) {
+          if (ki == 0) continue;
+          auto to = static_cast<std::size_t>(s.condensed_place()[place]);
+          const double factor = row_jacobian_[b][q] / c;
+          for (Index p = i == j ? q : 0; p < ki; ++p) values_[to++] += row_jacobian_[a][p] * factor;
+        }
+      }
+    }
+  }
+}
+
+// Column of a bordered row, in scaled unknowns.
+void Kkt::border_column(Index row, std::span<double> column) const {
+  const System& s = *system_;
+  const auto first = s.first_unknown();
+  std::fill(column.begin(), column.end(), 0.0);
+  for (auto d = s.row_jacobian_begin()[at(row)]; d < s.row_jacobian_begin()[at(row) + 1]; ++d) {
+    const Index i = s.jacobian_ends()[d][1];
+    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
+      column[at(c)] = scale_[at(c)] * row_jacobian_[d][c - first[at(i)]];
+    }
+  }
+}
+
+double Kkt::border_dot(Index row, std::span<const double> v) const {
+  const System& s = *system_;
+  const auto first = s.first_unknown();
+  double sum = 0;
+  for (auto d = s.row_jacobian_begin()[at(row)]; d < s.row_jacobian_begin()[at(row) + 1]; ++d) {
+    const Index i = s.jacobian_ends()[d][1];
+    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
+      sum += scale_[at(c)] * row_jacobian_[d][c - first[at(i)]] * v[at(c)];
+    }
+  }
+  return sum;
+}
+
+// With the matrix A = L D L^T at hand: S = -C_b - B^T A^-1 B, its eigenvectors (it is small and indefinite),
+// and its share of the inertia (Haynsworth: that of the whole is that of A plus that of S).
+Kkt::Outcome Kkt::eliminate_border(const Values& values, Outcome outcome) {
+  const System& s = *system_;
+  const std::size_t nb = s.bordered_rows().size(), size = at(s.kkt().size);
+  Eigen::Map<Eigen::MatrixXd> schur(schur_.data(), static_cast<Eigen::Index>(nb),
+                                    static_cast<Eigen::Index>(nb));
+  schur.setZero();
+  for (std::size_t k = 0; k < nb; ++k) {
+    const auto z = std::span(border_solution_).subspan(k * size, size);
+    border_column(s.bordered_rows()[k], rhs_);
+    if (!solver_->solve(rhs_, z).ok) {
+      outcome.status = FactorStatus::singular;
+      outcome.message = "the system without its bordered rows is singular";
+      return outcome;
+    }
+    for (std::size_t j = 0; j < nb; ++j) {
+      schur(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(k)) -=
+          border_dot(s.bordered_rows()[j], z);
+    }
+  }
+  for (const auto& [entry, row, col] : s.border_compliance()) {
+    const double c = compliance_of(values, entry);
+    schur(row, col) -= c;
+    if (row != col) schur(col, row) -= c;
+  }
+  // Rows in units of their metric, so that small eigenvalues mean dependence and not units.
+  for (std::size_t j = 0; j < nb; ++j)
+    border_work_[j] = 1 / std::sqrt(s.row_metric()[at(s.bordered_rows()[j])]);
+  for (Eigen::Index j = 0; j < schur.rows(); ++j) {
+    for (Eigen::Index k = 0; k < schur.rows(); ++k) {
+      schur(j, k) *= border_work_[static_cast<std::size_t>(j)] * border_work_[static_cast<std::size_t>(k)];
+    }
+  }
+  const Eigen::MatrixXd symmetric = 0.5 * (schur + schur.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric);
+  const double largest = eigen.eigenvalues().cwiseAbs().maxCoeff();
+  if (!std::isfinite(largest) || eigen.eigenvalues().cwiseAbs().minCoeff() <= 1e-14 * largest) {
+    outcome.status = FactorStatus::singular;
+    outcome.message = "the bordered rows depend on each other";
+    return outcome;
+  }
+  if (outcome.negative >= 0)
+    outcome.negative += static_cast<Index>((eigen.eigenvalues().array() < 0).count());
+  Eigen::Map<Eigen::MatrixXd> inverse(schur_vectors_.data(), schur.rows(), schur.rows());
+  inverse = eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
+            eigen.eigenvectors().transpose();
+  for (Eigen::Index j = 0; j < schur.rows(); ++j) {
+    for (Eigen::Index k = 0; k < schur.rows(); ++k) {
+      inverse(j, k) *= border_work_[static_cast<std::size_t>(j)] * border_work_[static_cast<std::size_t>(k)];
+    }
+  }
+  return outcome;
+}
+
+Kkt::Outcome Kkt::factor(const Assembly& assembly, const Values& values, StageSeconds& seconds) {
+  const System& s = *system_;
+  const SymmetricPattern& kkt = s.kkt();
+  {
+    const Stopwatch watch(seconds.gather);
+    // Places that only condensed rows write to have no other owner.
+    if (!s.condensed_rows().empty()) std::fill(values_.begin(), values_.end(), 0.0);
+    assembly.kkt_values(values.mass_scale, values_);
+    if (!row_jacobian_.empty()) assembly.row_jacobian(row_jacobian_);
+    for (const auto& [index, entry] : s.laws()) {
+      const std::size_t entries = s.parts().row_pools[at(index)]->compliance.size();
+      for (std::size_t k = entry; k < entry + entries; ++k) {
+        const auto place = s.compliance_place()[k];
+        if (place >= 0) values_[static_cast<std::size_t>(place)] -= values.tangent[k];
+      }
+    }
+    if (!values.clamped.empty()) {
+      // A row held at a bound leaves the system, with a diagonal that keeps the inertia.
+      const auto held = [&](Index i) {
+        const Index row = i >= s.free_unknowns() ? s.kept_rows()[at(i - s.free_unknowns())] : -1;
+        return row >= 0 && values.clamped[at(row)] ? row : -1;
+      };
+      for (Index c = 0; c < kkt.size; ++c) {
+        const auto to = static_cast<std::size_t>(kkt.column_start[at(c) + 1]);
+        const bool column_held = held(c) >= 0;
+        for (auto k = static_cast<std::size_t>(kkt.column_start[at(c)]); k < to; ++k) {
+          const Index row = held(kkt.row[k]);
+          if (row < 0 && !column_held) continue;
+          values_[k] = kkt.row[k] == c ? -s.row_metric()[at(row)] : 0;
+        }
+      }
+    }
+    scale_unknowns(values);
+    parallel_.run(kkt.size, 1024, [&](Index b, Index e) {
+      for (Index c = b; c < e; ++c) {
+        const auto to = static_cast<std::size_t>(kkt.column_start[at(c) + 1]);
+        for (auto k = static_cast<std::size_t>(kkt.column_start[at(c)]); k < to; ++k) {
+          values_[k] *= scale_[at(c)] * scale_[at(kkt.row[k])];
+        }
+      }
+    });
+  }
+  Outcome outcome;
+  if (!analyzed_) {
+    const Stopwatch watch(seconds.analyze);
+    const FactorReport f = solver_->analyze(kkt);
+    ++analyses_;
+    outcome.status = f.status;
+    outcome.message = f.message;
+    if (f.status != FactorStatus::ok) return outcome;
+    analyzed_ = true;
+  }
+  const Stopwatch watch(seconds.factor);
+  const FactorReport f = solver_->factor(values_);
+  factor_nonzeros_ = f.factor_nonzeros;
+  outcome = {f.status, f.negative_pivots, f.message};
+  if (f.status != FactorStatus::ok) return outcome;
+  // A condensed row has its negative pivot in -C, eliminated first.
+  if (outcome.negative >= 0) outcome.negative += static_cast<Index>(s.condensed_rows().size());
+  return s.bordered_rows().empty() ? outcome : eliminate_border(values, outcome);
+}
+
+bool Kkt::solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs, std::span<Vec3> dx,
+                std::span<double> dlambda, StageSeconds& seconds) {
+  const System& s = *system_;
+  const auto first = s.first_unknown();
+  const auto condensed = s.condensed_rows(), bordered = s.bordered_rows();
+  for (Index i = 0; i < s.nodes(); ++i) {
+    Vec3 q = node_rhs[at(i)];
+    const Index b = s.basis_of()[at(i)];
+    if (b >= 0) q = transposed_times(s.free_bases()[at(b)].directions, q);
+    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) rhs_[at(c)] = scale_[at(c)] * q[c - first[at(i)]];
+  }
+  for (Index r = 0; r < s.rows(); ++r) {
+    const Index u = s.row_unknown()[at(r)];
+    if (u >= 0) rhs_[at(u)] = scale_[at(u)] * row_rhs[at(r)];
+  }
+  // G dx - C dlambda = g: dlambda = (G dx - g) / C, so G^T g / C joins the right-hand side of the nodes.
+  for (std::size_t k = 0; k < condensed.size(); ++k) {
+    condensed_part_[k] = row_rhs[at(condensed[k])] / condensed_compliance_[k];
+    for (auto d = s.row_jacobian_begin()[at(condensed[k])]; d < s.row_jacobian_begin()[at(condensed[k]) + 1];
+         ++d) {
+      const Index i = s.jacobian_ends()[d][1];
+      for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
+        rhs_[at(c)] += scale_[at(c)] * row_jacobian_[d][c - first[at(i)]] * condensed_part_[k];
+      }
+    }
+  }
+  SolveReport solved;
+  {
+    const Stopwatch watch(seconds.solve);
+    solved = solver_->solve(rhs_, solution_);
+  }
+  residual_ = solved.residual;
+  const std::size_t nb = bordered.size(), size = at(s.kkt().size);
+  if (nb > 0) {
+    // dlambda_b = S^-1 (g_b - B^T A^-1 f), u = A^-1 f - A^-1 B dlambda_b.
+    for (std::size_t j = 0; j < nb; ++j) {
+      border_work_[j] = row_rhs[at(bordered[j])] - border_dot(bordered[j], solution_);
+    }
+    for (std::size_t j = 0; j < nb; ++j) {
+      double sum = 0;
+      for (std::size_t k = 0; k < nb; ++k) sum += schur_vectors_[k * nb + j] * border_work_[k];
+      border_value_[j] = sum;
+      dlambda[at(bordered[j])] = sum;
+    }
+    for (std::size_t j = 0; j < nb; ++j) {
+      const double* const z = border_solution_.data() + j * size;
+      for (std::size_t i = 0; i < size; ++i) solution_[i] -= z[i] * border_value_[j];
+    }
+  }
+  for (std::size_t k = 0; k < condensed.size(); ++k) {
+    double sum = 0;
+    for (auto d = s.row_jacobian_begin()[at(condensed[k])]; d < s.row_jacobian_begin()[at(condensed[k]) + 1];
+         ++d) {
+      const Index i = s.jacobian_ends()[d][1];
+      for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
+        sum += scale_[at(c)] * row_jacobian_[d][c - first[at(i)]] * solution_[at(c)];
+      }
+    }
+    dlambda[at(condensed[k])] = sum / condensed_compliance_[k] - condensed_part_[k];
+  }
+  for (Index i = 0; i < s.nodes(); ++i) {
+    Vec3 q{};
+    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c)
+      q[c - first[at(i)]] = scale_[at(c)] * solution_[at(c)];
+    const Index b = s.basis_of()[at(i)];
+    dx[at(i)] = b >= 0 ? s.free_bases()[at(b)].directions * q : q;
+  }
+  for (Index r = 0; r < s.rows(); ++r) {
+    const Index u = s.row_unknown()[at(r)];
+    if (u >= 0) dlambda[at(r)] = scale_[at(u)] * solution_[at(u)];
+  }
+  return solved.ok;
+}
+
+}  // namespace isochor
