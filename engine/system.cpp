@@ -307,8 +307,28 @@ class SystemCompiler {
     }
   }
 
-  // Which rows are unknowns of the matrix. Automatic rows are kept; the ordering puts those over everything
-  // last, which costs about what a border does.
+  // A pool that is left to us is condensed when that fills no new place and loses no digits: every row lies
+  // within one stencil and has a compliance of its own that is not tiny. Everything else is kept; the
+  // ordering puts rows over everything last, which costs what a border does.
+  RowTreatment choose(const RowPool& pool) const {
+    constexpr double smallest = 1e-6;  // compliance against the row metric: mu / kappa for volume rows
+    if (pool.treatment != RowTreatment::automatic) return pool.treatment;
+    if (pool.rows() == 0 || !pool.lower.empty() || !pool.upper.empty() || !check_condensed(pool, "")) {
+      return RowTreatment::saddle;
+    }
+    const Index functions = s_->parts_.stencil_pools[at(pool.stencil_pool)]->functions();
+    for (Index r = 0; r < pool.rows(); ++r) {
+      for (const Index f : pool.map[r]) {
+        if (f / functions != pool.map[r][0] / functions) return RowTreatment::saddle;
+      }
+    }
+    for (const ComplianceEntry& e : pool.compliance) {
+      if (e.value < smallest * pool.metric[at(e.row)]) return RowTreatment::saddle;
+    }
+    return RowTreatment::condensed;
+  }
+
+  // Which rows are unknowns of the matrix.
   Result<void> treat_rows() {
     constexpr Index border_limit = 64;
     s_->row_unknown_.assign(at(s_->rows_), -1);
@@ -340,9 +360,10 @@ class SystemCompiler {
                      " rows to border; each costs a solve a factorization, so " +
                      std::to_string(border_limit) + " in a scene are the limit; use treatment saddle"};
       }
-      auto& list = pool.treatment == RowTreatment::condensed
+      const RowTreatment treatment = choose(pool);
+      auto& list = treatment == RowTreatment::condensed
                        ? s_->condensed_rows_
-                       : (pool.treatment == RowTreatment::bordered ? s_->bordered_rows_ : s_->kept_rows_);
+                       : (treatment == RowTreatment::bordered ? s_->bordered_rows_ : s_->kept_rows_);
       for (Index r = 0; r < pool.rows(); ++r) list.push_back(s_->first_row_[p] + r);
     }
     for (std::size_t k = 0; k < s_->kept_rows_.size(); ++k) {

@@ -178,6 +178,7 @@ WorldSize World::size() const {
   s.nodes = w.system->nodes();
   s.displacement_unknowns = w.system->free_unknowns();
   s.multipliers = w.system->rows();
+  s.matrix_size = w.system->kkt().size;
   s.matrix_nonzeros = w.system->kkt().nonzeros();
   s.factor_nonzeros = w.newton->factor_nonzeros();
   s.engine_bytes = w.newton->assembly().memory_bytes();

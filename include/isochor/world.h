@@ -110,6 +110,7 @@ struct Gauge {
 
 struct WorldSize {
   Index nodes = 0, displacement_unknowns = 0, multipliers = 0;
+  Index matrix_size = 0;  // displacements and the rows kept in the saddle point
   std::int64_t matrix_nonzeros = 0, factor_nonzeros = 0;
   std::size_t engine_bytes = 0;
 };
