@@ -1,4 +1,4 @@
-// Times of every linear solver backend on the saddle matrix of a stabilised P1-P1 block at nu = 0.5.
+// Times of every linear solver backend on the saddle matrix of a stabilized P1-P1 block at nu = 0.5.
 //
 //   solvers_bench [--sizes 1600,8000,32000] [--repeats 7] [--blas-threads 1] [--all] [--sweep] [--cpu]
 //
@@ -61,7 +61,7 @@ std::vector<Tet> box_tets(int nx, int ny, int nz) {
   return tets;
 }
 
-// K = d(P)/d(F) of neo-Hookean at rest (mu = 1), G the nodal volume rows, -C the stabilisation with tau = 1.
+// K = d(P)/d(F) of neo-Hookean at rest (mu = 1), G the nodal volume rows, -C the stabilization with tau = 1.
 // The face z = 0 is held. Displacements and pressures are scaled so that a typical diagonal of K and of M_p /
 // mu is 1.
 System block(int nx, int ny, int nz) {
@@ -225,7 +225,7 @@ int main(int argc, char** argv) {
   }
   const bool settable = set_blas_threads(threads);
   for (const SolverBackend& b : linear_solver_backends()) {
-    std::printf("%s %s (%s)\n", b.name.c_str(), b.version.c_str(), b.licence.c_str());
+    std::printf("%s %s (%s)\n", b.name.c_str(), b.version.c_str(), b.license.c_str());
   }
   std::printf("BLAS threads: %s%d; %s times in ms, minimum and median of up to %d, the first excluded\n\n",
               settable ? "" : "not settable, wanted ", threads, take_cpu_time ? "processor" : "wall",
@@ -242,6 +242,10 @@ int main(int argc, char** argv) {
     MumpsOptions o;
     o.ordering = OrderingMethod::metis;
     mumps("mumps, METIS on the groups", o);
+    o.ordering = OrderingMethod::amf;
+    mumps("mumps, AMF on the groups", o);
+    o.ordering = OrderingMethod::pord;
+    mumps("mumps, PORD on the unknowns", o);
     o.ordering = OrderingMethod::amd;
     mumps("mumps, AMD on the groups", o);
     if (sweep) {

@@ -53,7 +53,7 @@ const BodyData& body_of(const SceneFacts& facts, Index node) {
   return *found;
 }
 
-// Words for a free rigid motion, the first three components being the translation at the centre.
+// Words for a free rigid motion, the first three components being the translation at the center.
 std::string describe(const Eigen::Matrix<double, 6, 1>& mode) {
   static const char* const kName[6] = {"translation along x", "translation along y", "translation along z",
                                        "rotation about x",    "rotation about y",    "rotation about z"};
