@@ -9,12 +9,22 @@ class TimeScheme {
  public:
   virtual ~TimeScheme() = default;
   virtual std::string_view name() const = 0;
-  // The factor s of the mass matrix [1/s^2]: 1/h^2 for implicit Euler, 0 in statics.
-  virtual double mass_scale(double h) const = 0;
-  // Where inertia alone would carry the nodes: inertia is s/2 |x - predicted|^2 in the mass metric.
-  virtual void predict(const State& state, double h, std::span<Vec3> predicted) const = 0;
-  // Velocities and time from the accepted positions. state.x still holds the old positions.
-  virtual void finish(double h, std::span<const Vec3> x_new, State& state) const = 0;
+  virtual bool has_inertia() const { return true; }
+
+  // Numbers that the scheme keeps between steps, beside positions and velocities; all zero at the start,
+  // which a scheme takes as having no past.
+  virtual std::size_t memory(std::size_t nodes) const {
+    (void)nodes;
+    return 0;
+  }
+  // Begins a step of length h: inertia is s/2 |x - predicted|^2 in the mass metric. Fills `predicted`, where
+  // inertia alone would carry the nodes, and returns s [1/s^2]: 1/h^2 for implicit Euler, 0 in statics.
+  virtual double begin(const State& state, std::span<const double> memory, double h,
+                       std::span<Vec3> predicted) const = 0;
+  // Velocities and time from the accepted positions. state.x still holds the old positions; `predicted` is
+  // what begin() filled in.
+  virtual void finish(double h, std::span<const Vec3> x_new, std::span<const Vec3> predicted, State& state,
+                      std::span<double> memory) const = 0;
 };
 
 }  // namespace isochor

@@ -24,7 +24,10 @@ Result<World> World::create(WorldOptions options, std::uint64_t abi) {
                  ", the library has version " + std::to_string(kWorldAbi) + "; rebuild the program"};
   }
   if (!options.scheme)
-    return Error{"world: no time scheme; set WorldOptions::scheme to implicit_euler() or statics()"};
+    return Error{
+        "world: no time scheme; set WorldOptions::scheme to implicit_euler(), statics() or another of "
+        "isochor/schemes.h "
+        "(generalized_alpha takes a spectral radius from 0 to 1)"};
   if (!(options.force_tolerance > 0) || !(options.row_tolerance > 0)) {
     return Error{"world: tolerances must be positive; the defaults are 1e-9 and 1e-10"};
   }
@@ -90,7 +93,7 @@ Result<void> World::Impl::compile_once() {
   for (const std::string& warning : builder.warnings()) {
     if (options.log) options.log(warning);
   }
-  auto parts = builder.finish(options.scheme->mass_scale(1) == 0);
+  auto parts = builder.finish(!options.scheme->has_inertia());
   if (!parts) return Error{parts.error()};
   auto compiled_system = System::compile(std::move(parts).value());
   if (!compiled_system) return Error{compiled_system.error()};
@@ -119,8 +122,8 @@ void World::Impl::allocate() {
   prescribed.resize(at(system->prescribed_rows()));
   position.resize(system->free_bases().size());
   reactions.assign(n, Vec3{});
-  state.extra.assign(at(system->memory()), 0.0);
-  memory_before.resize(state.extra.size());
+  state.extra.assign(at(system->memory()) + options.scheme->memory(n), 0.0);
+  memory_before.resize(at(system->memory()));
   for (Index p = 0; p < static_cast<Index>(parts.row_pools.size()); ++p) {
     const RowPool& pool = *parts.row_pools[at(p)];
     if (pool.memory() == 0) continue;
@@ -129,9 +132,9 @@ void World::Impl::allocate() {
   }
   // Gravity acts on the mass that inertia has: with a lumped mass, free fall stays rigid. Statics has no
   // inertia and takes the consistent distribution, which is more accurate for Tet10.
-  if (options.scheme->mass_scale(1) > 0) weight = parts.mass;
+  if (options.scheme->has_inertia()) weight = parts.mass;
   for (const BodyData& body : builder.bodies()) {
-    if (options.scheme->mass_scale(1) > 0) break;
+    if (options.scheme->has_inertia()) break;
     for (const RegionData& region : body.regions) {
       add_nodal_volume(*body.reference, parts.rest, body.global_cells, region.cells, region.density, weight);
     }
@@ -159,7 +162,7 @@ void World::Impl::evaluate_data(double t) {
 // What row pools keep from one step to the next, from the multipliers that the step arrived at.
 void World::Impl::accept_memory(double t0, double t1) {
   if (system->memory() == 0) return;
-  std::copy(state.extra.begin(), state.extra.end(), memory_before.begin());
+  std::copy_n(state.extra.begin(), memory_before.size(), memory_before.begin());
   for (Index p = 0; p < static_cast<Index>(system->parts().row_pools.size()); ++p) {
     const RowPool& pool = *system->parts().row_pools[at(p)];
     if (pool.memory() == 0) continue;
@@ -173,9 +176,8 @@ void World::Impl::accept_memory(double t0, double t1) {
 NewtonReport World::Impl::attempt(double h, int max_iterations, int max_factorizations) {
   const double t_new = state.t + h;
   evaluate_data(t_new);
-  options.scheme->predict(state, h, predicted);
   NewtonProblem problem;
-  problem.mass_scale = options.scheme->mass_scale(h);
+  problem.mass_scale = options.scheme->begin(state, scheme_memory(), h, predicted);
   problem.predicted = predicted;
   problem.force = force;
   problem.target = target;
@@ -183,7 +185,7 @@ NewtonReport World::Impl::attempt(double h, int max_iterations, int max_factoriz
   problem.position = position;
   problem.t0 = state.t;
   problem.t1 = t_new;
-  problem.memory = state.extra;
+  problem.memory = std::span<const double>(state.extra).first(at(system->memory()));
   if (problem.mass_scale > 0) problem.increment = {h, state.x};
   NewtonOptions newton_options;
   newton_options.max_iterations = max_iterations;
@@ -218,7 +220,7 @@ NewtonReport World::Impl::attempt(double h, int max_iterations, int max_factoriz
   }
   if (report.status == NewtonStatus::converged) {
     accept_memory(state.t, t_new);
-    options.scheme->finish(h, x_trial, state);
+    options.scheme->finish(h, x_trial, predicted, state, scheme_memory());
     std::copy(lambda_trial.begin(), lambda_trial.end(), state.lambda.begin());
     std::copy(newton->residual().begin(), newton->residual().end(), reactions.begin());
   }
@@ -400,7 +402,7 @@ void World::Impl::load_amounts(std::span<const double> all) {
 }
 
 void World::Impl::begin_amounts(double t0, double t1) {
-  const bool quasi_static = options.scheme->mass_scale(1) == 0;
+  const bool quasi_static = !options.scheme->has_inertia();
   for (const auto& instance : instances) {
     // In dynamics a new value holds from the next step on; statics ramps to it.
     if (Amount* a = instance->amount()) a->begin(quasi_static ? t0 : t1, t1);

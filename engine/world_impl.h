@@ -39,6 +39,8 @@ struct World::Impl {
   void load_amounts(std::span<const double> all);
   void begin_amounts(double t0, double t1);
   void evaluate_data(double t);
+  // The part of state.extra that the time scheme keeps.
+  std::span<double> scheme_memory() { return std::span(state.extra).subspan(at(system->memory())); }
   void accept_memory(double t0, double t1);
   NewtonReport attempt(double h, int max_iterations, int max_factorizations);
   StepReport invalid(std::string reason) const;

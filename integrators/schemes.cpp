@@ -10,31 +10,152 @@ namespace {
 class Statics final : public TimeScheme {
  public:
   std::string_view name() const override { return "static"; }
-  double mass_scale(double) const override { return 0; }
-  void predict(const State& state, double, std::span<Vec3> predicted) const override {
+  bool has_inertia() const override { return false; }
+  double begin(const State& state, std::span<const double>, double,
+               std::span<Vec3> predicted) const override {
     std::copy(state.x.begin(), state.x.end(), predicted.begin());
+    return 0;
   }
-  void finish(double h, std::span<const Vec3> x_new, State& state) const override {
+  void finish(double h, std::span<const Vec3> x_new, std::span<const Vec3>, State& state,
+              std::span<double>) const override {
     std::copy(x_new.begin(), x_new.end(), state.x.begin());
     state.t += h;
   }
 };
 
 // v_new = (x_new - x)/h and M (v_new - v)/h = forces at x_new: inertia 1/(2 h^2) |x_new - (x + h v)|^2.
+double begin_euler(const State& state, double h, std::span<Vec3> predicted) {
+  for (std::size_t i = 0; i < state.x.size(); ++i) predicted[i] = state.x[i] + h * state.v[i];
+  return 1 / (h * h);
+}
+void finish_euler(double h, std::span<const Vec3> x_new, State& state) {
+  for (std::size_t i = 0; i < state.x.size(); ++i) {
+    state.v[i] = (1 / h) * (x_new[i] - state.x[i]);
+    state.x[i] = x_new[i];
+  }
+  state.t += h;
+}
+
 class ImplicitEuler final : public TimeScheme {
  public:
   std::string_view name() const override { return "implicit_euler"; }
-  double mass_scale(double h) const override { return 1 / (h * h); }
-  void predict(const State& state, double h, std::span<Vec3> predicted) const override {
-    for (std::size_t i = 0; i < state.x.size(); ++i) predicted[i] = state.x[i] + h * state.v[i];
+  double begin(const State& state, std::span<const double>, double h,
+               std::span<Vec3> predicted) const override {
+    return begin_euler(state, h, predicted);
   }
-  void finish(double h, std::span<const Vec3> x_new, State& state) const override {
+  void finish(double h, std::span<const Vec3> x_new, std::span<const Vec3>, State& state,
+              std::span<double>) const override {
+    finish_euler(h, x_new, state);
+  }
+};
+
+Vec3 kept_vector(std::span<const double> memory, std::size_t i) {
+  return {memory[3 * i], memory[3 * i + 1], memory[3 * i + 2]};
+}
+void keep(std::span<double> memory, std::size_t i, const Vec3& v) {
+  memory[3 * i] = v.x;
+  memory[3 * i + 1] = v.y;
+  memory[3 * i + 2] = v.z;
+}
+
+// h dy/dt = a y_new + b y + c y_old for a step h after one of length h_old (Hairer, Norsett & Wanner, III.5),
+// used for positions and for velocities. Memory: h_old (0: no past), then old positions, then old velocities.
+class Bdf2 final : public TimeScheme {
+ public:
+  std::string_view name() const override { return "bdf2"; }
+  std::size_t memory(std::size_t nodes) const override { return 1 + 6 * nodes; }
+  double begin(const State& state, std::span<const double> memory, double h,
+               std::span<Vec3> predicted) const override {
+    if (!(memory[0] > 0)) return begin_euler(state, h, predicted);
+    const Weights w(h, memory[0]);
+    const auto old_x = memory.subspan(1), old_v = memory.subspan(1 + 3 * state.x.size());
     for (std::size_t i = 0; i < state.x.size(); ++i) {
-      state.v[i] = (1 / h) * (x_new[i] - state.x[i]);
-      state.x[i] = x_new[i];
+      predicted[i] = (-1 / w.a) * (w.b * state.x[i] + w.c * kept_vector(old_x, i)) -
+                     (1 / (w.a * w.a)) * (w.b * state.v[i] + w.c * kept_vector(old_v, i));
     }
+    return w.a * w.a;
+  }
+  void finish(double h, std::span<const Vec3> x_new, std::span<const Vec3>, State& state,
+              std::span<double> memory) const override {
+    const double h_old = memory[0];
+    const auto old_x = memory.subspan(1), old_v = memory.subspan(1 + 3 * state.x.size());
+    const Weights w(h, h_old > 0 ? h_old : h);
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      const Vec3 v_new = h_old > 0 ? w.a * x_new[i] + w.b * state.x[i] + w.c * kept_vector(old_x, i)
+                                   : (1 / h) * (x_new[i] - state.x[i]);
+      keep(old_x, i, state.x[i]);
+      keep(old_v, i, state.v[i]);
+      state.x[i] = x_new[i];
+      state.v[i] = v_new;
+    }
+    memory[0] = h;
     state.t += h;
   }
+
+ private:
+  struct Weights {
+    double a, b, c;
+    Weights(double h, double h_old) {
+      const double w = h / h_old;
+      a = (1 + 2 * w) / (1 + w) / h;
+      b = -(1 + w) / h;
+      c = w * w / (1 + w) / h;
+    }
+  };
+};
+
+// Chung & Hulbert 1993 as Arnold & Bruels 2007 write it, with an acceleration-like variable a beside the true
+// acceleration q: (1 - am) a_new + am a = (1 - af) q_new + af q, M q_new = forces at x_new,
+//   x_new = x + h v + h^2 ((1/2 - beta) a + beta a_new),  v_new = v + h ((1 - gamma) a + gamma a_new).
+// Solved for q_new it is affine in x_new: q_new = s (x_new - predicted). Memory: 1 when there is a past, then
+// a, then q.
+class GeneralizedAlpha final : public TimeScheme {
+ public:
+  GeneralizedAlpha(std::string_view name, double am, double af)
+      : name_(name), am_(am), af_(af), gamma_(0.5 - am + af), beta_(0.25 * (1 - am + af) * (1 - am + af)) {}
+  std::string_view name() const override { return name_; }
+  std::size_t memory(std::size_t nodes) const override { return 1 + 6 * nodes; }
+  double begin(const State& state, std::span<const double> memory, double h,
+               std::span<Vec3> predicted) const override {
+    if (memory[0] == 0) return begin_euler(state, h, predicted);
+    const double s = scale(h);
+    const auto a = memory.subspan(1), q = memory.subspan(1 + 3 * state.x.size());
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      const Vec3 a_i = kept_vector(a, i);
+      predicted[i] = state.x[i] + h * state.v[i] + (h * h * (0.5 - beta_)) * a_i -
+                     (1 / ((1 - af_) * s)) * (am_ * a_i - af_ * kept_vector(q, i));
+    }
+    return s;
+  }
+  void finish(double h, std::span<const Vec3> x_new, std::span<const Vec3> predicted, State& state,
+              std::span<double> memory) const override {
+    const bool past = memory[0] != 0;
+    const auto a = memory.subspan(1), q = memory.subspan(1 + 3 * state.x.size());
+    const double s = past ? scale(h) : 1 / (h * h);
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      const Vec3 q_new = s * (x_new[i] - predicted[i]);
+      Vec3 a_new = q_new;
+      if (past) {
+        const Vec3 a_old = kept_vector(a, i);
+        a_new = (1 / (beta_ * h * h)) *
+                (x_new[i] - state.x[i] - h * state.v[i] - (h * h * (0.5 - beta_)) * a_old);
+        state.v[i] = state.v[i] + h * ((1 - gamma_) * a_old + gamma_ * a_new);
+      } else {
+        state.v[i] = (1 / h) * (x_new[i] - state.x[i]);
+      }
+      state.x[i] = x_new[i];
+      keep(a, i, a_new);
+      keep(q, i, q_new);
+    }
+    memory[0] = 1;
+    state.t += h;
+  }
+
+ private:
+  double scale(double h) const { return (1 - am_) / ((1 - af_) * beta_ * h * h); }
+
+  std::string_view name_;
+  double am_, af_, gamma_, beta_;
 };
 
 }  // namespace
@@ -44,6 +165,18 @@ SchemePtr statics() {
 }
 SchemePtr implicit_euler() {
   return std::make_shared<ImplicitEuler>();
+}
+SchemePtr bdf2() {
+  return std::make_shared<Bdf2>();
+}
+SchemePtr generalized_alpha(double spectral_radius) {
+  if (!(spectral_radius >= 0 && spectral_radius <= 1)) return nullptr;
+  return std::make_shared<GeneralizedAlpha>("generalized_alpha",
+                                            (2 * spectral_radius - 1) / (spectral_radius + 1),
+                                            spectral_radius / (spectral_radius + 1));
+}
+SchemePtr newmark() {
+  return std::make_shared<GeneralizedAlpha>("newmark", 0, 0);
 }
 
 }  // namespace isochor

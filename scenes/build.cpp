@@ -10,6 +10,21 @@ namespace isochor {
 
 namespace {
 
+SchemePtr make_scheme(const AnalysisDef& a) {
+  if (a.type == AnalysisType::statics) return statics();
+  switch (a.scheme) {
+    case SchemeWord::implicit_euler:
+      return implicit_euler();
+    case SchemeWord::bdf2:
+      return bdf2();
+    case SchemeWord::generalized_alpha:
+      return generalized_alpha(a.spectral_radius);
+    case SchemeWord::newmark:
+      return newmark();
+  }
+  return nullptr;
+}
+
 Result<Mesh> make_mesh(const SceneBody& body, const std::string& folder) {
   if (const auto* box = std::get_if<BoxMeshDef>(&body.mesh)) return box_mesh(*box);
   const auto& file = std::get<MeshFile>(body.mesh);
@@ -82,7 +97,7 @@ Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
   if (auto r = check_scene(scene); !r) return Error{r.error()};
   WorldOptions world_options;
   const AnalysisDef& a = scene.analysis;
-  world_options.scheme = a.type == AnalysisType::statics ? statics() : implicit_euler();
+  world_options.scheme = make_scheme(a);
   world_options.solver = a.solver;
   world_options.threads = options.threads;
   world_options.max_iterations = a.max_iterations;

@@ -121,6 +121,13 @@ Result<void> check_analysis(const AnalysisDef& a) {
     return Error{"analysis.steps = " + std::to_string(a.steps) + "; it must lie between 1 and " +
                  std::to_string(kMostSteps)};
   }
+  if (!(a.spectral_radius >= 0 && a.spectral_radius <= 1)) {
+    return Error{"analysis.spectral_radius = " + number(a.spectral_radius) +
+                 "; it must lie between 0 (damps the fastest motion at once) and 1 (not at all)"};
+  }
+  if (a.type == AnalysisType::statics && a.scheme != SchemeWord::implicit_euler) {
+    return Error{"analysis.scheme belongs to dynamics; remove it or set analysis.type to \"dynamic\""};
+  }
   if (!(a.smallest_fraction > 0) || a.smallest_fraction > 1) {
     return Error{"analysis.smallest_fraction = " + number(a.smallest_fraction) +
                  "; it must be positive and at most 1"};

@@ -74,12 +74,15 @@ struct VolumeRows {
 };
 
 enum class AnalysisType : std::uint8_t { statics, dynamics };
+enum class SchemeWord : std::uint8_t { implicit_euler, bdf2, generalized_alpha, newmark };
 
 struct AnalysisDef {
   AnalysisType type = AnalysisType::statics;
-  double duration = 1;         // [s]; statics: final load factor
-  int steps = 10;              // results are reported this often
-  std::optional<double> step;  // [s], instead of steps
+  SchemeWord scheme = SchemeWord::implicit_euler;  // dynamics
+  double spectral_radius = 0.8;                    // of generalized_alpha, 0 to 1
+  double duration = 1;                             // [s]; statics: final load factor
+  int steps = 10;                                  // results are reported this often
+  std::optional<double> step;                      // [s], instead of steps
   Solver solver = Solver::automatic;
   int max_iterations = 60;
   double force_tolerance = 1e-9, row_tolerance = 1e-10;  // see WorldOptions

@@ -1,13 +1,28 @@
-// Time schemes a world can use.
+// Time schemes for WorldOptions::scheme.
 #pragma once
 
 #include "isochor/world.h"
 
 namespace isochor {
 
-// No inertia: `time` is the load factor.
+// Equilibrium without inertia. Time is the load factor: curves ramp from 0 to 1 by default.
 SchemePtr statics();
-// First order, unconditionally stable, dissipative.
+
+// First order; damps fast motion strongly; the safest with large steps.
 SchemePtr implicit_euler();
+
+// Second order backward differences (variable step), begun with one implicit Euler step. Damps fast motion,
+// hardly damps slow motion; multipliers of hard rows do not oscillate.
+SchemePtr bdf2();
+
+// The generalized-alpha method of Chung & Hulbert 1993 in the form of Arnold & Bruels 2007, which meets hard
+// rows at the end of each step; second order. spectral_radius in [0, 1] is what is left of the fastest motion
+// after a step: 1 keeps energy best and lets multipliers of hard rows oscillate from step to step, 0 damps
+// them within a step. Begun with one implicit Euler step. A value outside [0, 1] is refused by World::create.
+SchemePtr generalized_alpha(double spectral_radius = 0.8);
+
+// Newmark's method with beta = 1/4, gamma = 1/2 (the trapezoidal rule): generalized_alpha's forces at the end
+// of a step and no damping of its own. For bodies without hard rows; with them, multipliers oscillate.
+SchemePtr newmark();
 
 }  // namespace isochor

@@ -174,6 +174,8 @@ void describe(Io& io, DampingDef& d) {
 template <class Io>
 void describe(Io& io, AnalysisDef& a) {
   io.word("type", a.type, AnalysisType::statics);
+  io.word("scheme", a.scheme, SchemeWord::implicit_euler);
+  io.number("spectral_radius", a.spectral_radius, 0.8);
   io.number("duration", a.duration, 1.0);
   io.not_both("steps", "step");
   io.integer("steps", a.steps, a.step ? a.steps : 10);

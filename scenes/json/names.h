@@ -39,6 +39,8 @@ ISOCHOR_WORDS(RowTreatment, 4, {RowTreatment::automatic, "automatic"}, {RowTreat
               {RowTreatment::condensed, "condensed"}, {RowTreatment::bordered, "bordered"});
 ISOCHOR_WORDS(CavityControl, 3, {CavityControl::pressure, "pressure"}, {CavityControl::volume, "volume"},
               {CavityControl::volume_ratio, "volume_ratio"});
+ISOCHOR_WORDS(SchemeWord, 4, {SchemeWord::implicit_euler, "implicit_euler"}, {SchemeWord::bdf2, "bdf2"},
+              {SchemeWord::generalized_alpha, "generalized_alpha"}, {SchemeWord::newmark, "newmark"});
 ISOCHOR_WORDS(AnalysisType, 2, {AnalysisType::statics, "static"}, {AnalysisType::dynamics, "dynamic"});
 ISOCHOR_WORDS(Solver, 4, {Solver::automatic, "automatic"}, {Solver::mumps, "mumps"},
               {Solver::cholmod, "cholmod"}, {Solver::eigen, "eigen"});
