@@ -3,6 +3,9 @@
 //
 //   isochor_bench_materials [--repeats N]
 //
+// Then what elements cost around it: forces and Hessians of 39,600 Tet4 with a volume row each, and of the
+// edge patches of the same mesh, with the memory that an evaluation reads and writes.
+//
 // Prints minimum and median over the repeats, the first one left out, and a checksum of the answers.
 #include <algorithm>
 #include <chrono>
@@ -13,7 +16,10 @@
 #include <random>
 #include <vector>
 
+#include "engine/elements/reference_element.h"
+#include "engine/elements/solid_pool.h"
 #include "engine/material_model.h"
+#include "isochor/generate.h"
 #include "isochor/materials.h"
 
 namespace {
@@ -81,6 +87,67 @@ std::vector<MaterialPtr> shelf() {
           must(with_fibers(must(neo_hookean(c)), {{{1, 1, 0}, 5e4, 1.5, 0, {}}}))};
 }
 
+// Slots of a pool, as the assembly holds them.
+struct Slots {
+  std::vector<double> energy, value, multiplier;
+  std::vector<Vec3> gradient, jacobian;
+  std::vector<Mat3> hessian;
+  explicit Slots(const SolidPool& pool)
+      : energy(at(pool.stencils())),
+        value(at(pool.stencils() * pool.functions())),
+        multiplier(value.size(), -3e3),
+        gradient(pool.nodes().item.size()),
+        jacobian(gradient.size() * static_cast<std::size_t>(pool.functions())),
+        hessian(static_cast<std::size_t>(pool.hessian_offset().back())) {}
+  StencilSlots spans() { return {energy, value, gradient, jacobian, hessian}; }
+};
+
+double megabytes(const SolidPool& pool, const Slots& s) {
+  const double nodes = static_cast<double>(pool.nodes().item.size());
+  const double read = nodes * (sizeof(Index) + 3 * sizeof(Vec3)) + 8.0 * static_cast<double>(s.energy.size());
+  const double write = static_cast<double>((s.gradient.size() + s.jacobian.size()) * sizeof(Vec3) +
+                                           s.hessian.size() * sizeof(Mat3) + 16 * s.energy.size());
+  return (read + write) / 1e6;
+}
+
+void bench_elements(int repeats) {
+  auto mesh = box_mesh({{0, 0, 0}, {1, 0.15, 0.15}, {66, 10, 10}, CellType::tet4});
+  if (!mesh) std::exit(2);
+  const Mesh& m = mesh.value();
+  std::vector<Index> cells(static_cast<std::size_t>(m.cell_count()));
+  for (std::size_t c = 0; c < cells.size(); ++c) cells[c] = static_cast<Index>(c);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> unit(-2e-3, 2e-3);
+  std::vector<Vec3> x = m.nodes;
+  for (Vec3& p : x) p += Vec3{unit(random), unit(random), unit(random)};
+  ElasticConstants c;
+  c.young = 1e5;
+  c.poisson = 0.5;
+  const auto material = must(stable_neo_hookean(c))->distortional();
+  auto tets = solid_data(tet4_element(), m.nodes, m.cells, cells, VolumeFunctions::constant);
+  auto patches = edge_patch_data(m.nodes, m.cells, cells);
+  if (!tets || !patches) std::exit(2);
+  const SolidPool pools[] = {{"tet4", std::move(tets).value(), material, VolumeStrain::linear},
+                             {"edge patches", std::move(patches).value(), material, VolumeStrain::linear}};
+  std::printf("%-28s %14s %14s %14s %14s   ms an evaluation, least (median)\n", "elements", "energy",
+              "forces", "Hessians", "definite");
+  for (const SolidPool& pool : pools) {
+    Slots slots(pool);
+    const auto run = [&](Want want, Definiteness policy) {
+      const StencilRequest request{want, policy, 0, pool.stencils(), x, m.nodes, slots.multiplier};
+      Timing t = measure(repeats, [&] { pool.evaluate(request, slots.spans()); });
+      const double scale = kBatches * kLanes * 1e-6;
+      std::printf(" %6.2f (%5.2f)", t.least * scale, t.median * scale);
+    };
+    std::printf("%-14s %13d", std::string(pool.name()).c_str(), pool.stencils());
+    run(Want::value, Definiteness::exact);
+    run(Want::gradient, Definiteness::exact);
+    run(Want::hessian, Definiteness::exact);
+    run(Want::hessian, Definiteness::projected);
+    std::printf("   %.1f MB\n", megabytes(pool, slots));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -132,5 +199,6 @@ int main(int argc, char** argv) {
     for (const Timing& x : t) std::printf(" %6.1f (%5.1f)", x.least, x.median);
     std::printf("   sum %.9g\n", sum);
   }
+  bench_elements(std::max(3, repeats / 10));
   return 0;
 }
