@@ -167,6 +167,11 @@ class World {
   // curve. In statics the next increment ramps from the old value to the new one.
   Result<void> set_amount(EffectId effect, double amount);
 
+  // Puts the nodes of a body somewhere else, one position a node: crushed, tangled or turned inside out. The
+  // body is at rest there and its rows have no multipliers; the next step starts from this. For materials
+  // that live through inversion.
+  Result<void> set_positions(BodyId body, std::span<const Vec3> positions);
+
   double time() const;
   // Views of the state's own numbers, valid until the next step or load().
   std::span<const Vec3> positions(BodyId body) const;
