@@ -71,9 +71,13 @@ void print_sets(const Mesh& mesh) {
   if (!sets.empty()) std::printf("  node sets %s\n", sets.c_str());
 }
 
+const char* cell_name(CellType type) {
+  return type == CellType::tet10 ? "Tet10" : (type == CellType::hex8 ? "Hex8" : "Tet4");
+}
+
 void print_report(const std::string& path, const Mesh& mesh, const MeshReport& r) {
   std::printf("%s\n  %d nodes, %d %s in %d part%s\n", path.c_str(), r.nodes, r.cells,
-              mesh.cell_type == CellType::tet10 ? "Tet10" : "Tet4", r.parts, r.parts == 1 ? "" : "s");
+              cell_name(mesh.cell_type), r.parts, r.parts == 1 ? "" : "s");
   std::printf("  box       (%s, %s, %s) to (%s, %s, %s) m, volume %s m^3\n", number(r.box[0].x).c_str(),
               number(r.box[0].y).c_str(), number(r.box[0].z).c_str(), number(r.box[1].x).c_str(),
               number(r.box[1].y).c_str(), number(r.box[1].z).c_str(), number(r.volume).c_str());

@@ -6,6 +6,7 @@
 
 #include "constraints/surface_pool.h"
 #include "engine/builder.h"
+#include "engine/mesh/cell_shape.h"
 
 namespace isochor {
 
@@ -14,14 +15,25 @@ namespace {
 // A face turned so that its normal points from the cavity into the solid.
 using Face = std::vector<Index>;
 
-std::array<Index, 3> sorted_corners(const Index* n) {
-  std::array<Index, 3> key{n[0], n[1], n[2]};
+std::size_t corners_of(const Face& f) {
+  return f.size() == 4 ? 4 : 3;
+}
+
+// Ascending; the first of a triangle is -1.
+using FaceKey = std::array<Index, 4>;
+
+FaceKey sorted_corners(std::span<const Index> corners) {
+  FaceKey key{-1, -1, -1, -1};
+  std::copy(corners.begin(), corners.end(), key.begin());
   std::sort(key.begin(), key.end());
   return key;
 }
+FaceKey key_of(const Face& f) {
+  return sorted_corners(std::span(f).first(corners_of(f)));
+}
 
 void flip(Face& f) {
-  std::swap(f[1], f[2]);
+  std::swap(f[1], f[corners_of(f) - 1]);
   if (f.size() == 6) std::swap(f[3], f[5]);
 }
 
@@ -30,31 +42,39 @@ void flip(Face& f) {
 Result<void> orient(const BodyData& body, std::vector<Face>& faces, std::span<const Vec3> rest,
                     const std::string& who) {
   const auto per = static_cast<std::size_t>(nodes_per_cell(body.mesh.cell_type));
-  constexpr std::size_t kSide[4][4] = {
-      {0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}};   // face, opposite
-  std::map<std::array<Index, 3>, std::pair<int, Index>> owners;  // count, opposite corner
-  for (const Face& f : faces) owners[sorted_corners(f.data())] = {0, -1};
+  const CellShape& shape = cell_shape(body.mesh.cell_type);
+  struct Owner {
+    int cells = 0;
+    Vec3 middle{};  // of the last cell
+  };
+  std::map<FaceKey, Owner> owners;
+  for (const Face& f : faces) owners[key_of(f)] = {};
   for (std::size_t c = 0; c < body.global_cells.size(); c += per) {
     const Index* n = body.global_cells.data() + c;
-    for (const auto& side : kSide) {
-      const Index corner[3] = {n[side[0]], n[side[1]], n[side[2]]};
-      const auto it = owners.find(sorted_corners(corner));
+    for (std::size_t side = 0; side < shape.sides; ++side) {
+      std::array<Index, 4> corner{};
+      for (std::size_t k = 0; k < shape.side_corners; ++k) corner[k] = n[shape.side[side][k]];
+      const auto it = owners.find(sorted_corners(std::span(corner).first(shape.side_corners)));
       if (it == owners.end()) continue;
-      ++it->second.first;
-      it->second.second = n[side[3]];
+      ++it->second.cells;
+      it->second.middle = {};
+      for (std::size_t k = 0; k < shape.corners; ++k)
+        it->second.middle += (1.0 / static_cast<double>(shape.corners)) * rest[at(n[k])];
     }
   }
   for (Face& f : faces) {
-    const auto& [count, opposite] = owners[sorted_corners(f.data())];
+    const auto& [count, middle] = owners[key_of(f)];
     if (count != 1) {
       return Error{who + "face (" + std::to_string(f[0] - body.first_node + 1) + ", " +
                    std::to_string(f[1] - body.first_node + 1) + ", " +
                    std::to_string(f[2] - body.first_node + 1) + ") belongs to " + std::to_string(count) +
                    " cells; a cavity is bounded by faces of exactly one cell, name boundary surfaces only"};
     }
+    // From the diagonals, where there are two.
+    const std::size_t last = corners_of(f) - 1;
     const Vec3 a = rest[at(f[0])];
-    const Vec3 normal = cross(rest[at(f[1])] - a, rest[at(f[2])] - a);
-    if (dot(normal, rest[at(opposite)] - a) < 0) flip(f);
+    const Vec3 normal = cross(rest[at(f[last - 1])] - a, rest[at(f[last])] - rest[at(f[last == 3 ? 1 : 0])]);
+    if (dot(normal, middle - a) < 0) flip(f);
   }
   return {};
 }
@@ -65,9 +85,9 @@ Result<std::vector<std::vector<Index>>> boundary_loops(const std::vector<Face>& 
                                                        const std::string& who) {
   std::map<std::pair<Index, Index>, Index> directed;  // edge -> mid-node or -1
   for (const Face& f : faces) {
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < corners_of(f); ++k) {
       const Index mid = f.size() == 6 ? f[3 + k] : -1;
-      if (!directed.emplace(std::pair(f[k], f[(k + 1) % 3]), mid).second) {
+      if (!directed.emplace(std::pair(f[k], f[(k + 1) % corners_of(f)]), mid).second) {
         return Error{
             who +
             "its surface is not a manifold: an edge is used twice in the same direction; mend the mesh, "
@@ -361,8 +381,7 @@ class CavityEffect final : public EffectSource {
                    "body, or close the surface"};
     }
     auto pool = std::make_shared<EnclosedVolumePool>(def_.name, origin);
-    const FaceRule& rule = per == 6 ? triangle6_rule() : triangle3_rule();
-    for (const Face& f : faces) pool->add_face(f, rule);
+    for (const Face& f : faces) pool->add_face(f, face_rule(per));
     for (const auto* loop : fans) add_cap(*pool, *loop, builder.rest(), per == 6);
     symmetry.add_to(*pool, origin);
     pool->finish();

@@ -62,6 +62,22 @@ FaceRule make_triangle6() {
   return r;
 }
 
+FaceRule make_quadrangle4() {
+  FaceRule r;
+  r.nodes = 4;
+  const double g = 0.5 / std::sqrt(3.0);
+  for (const double u : {0.5 - g, 0.5 + g}) {
+    for (const double v : {0.5 - g, 0.5 + g}) {
+      r.N.insert(r.N.end(), {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v});
+      r.N_u.insert(r.N_u.end(), {v - 1, 1 - v, v, -v});
+      r.N_v.insert(r.N_v.end(), {u - 1, -u, u, 1 - u});
+      r.weight.push_back(0.25);
+      ++r.points;
+    }
+  }
+  return r;
+}
+
 // The six-node face (apex, a, b; apex-a, ab, b-apex) with the two straight mid-nodes tied to their ends.
 FaceRule make_cap4() {
   const FaceRule& six = triangle6_rule();
@@ -182,6 +198,13 @@ const FaceRule& triangle6_rule() {
   static const FaceRule rule = make_triangle6();
   return rule;
 }
+const FaceRule& quadrangle4_rule() {
+  static const FaceRule rule = make_quadrangle4();
+  return rule;
+}
+const FaceRule& face_rule(std::size_t nodes) {
+  return nodes == 3 ? triangle3_rule() : (nodes == 4 ? quadrangle4_rule() : triangle6_rule());
+}
 const FaceRule& cap4_rule() {
   static const FaceRule rule = make_cap4();
   return rule;
@@ -200,7 +223,7 @@ const FaceRule& fan3_rule() {
 }
 
 std::vector<std::pair<Index, double>> nodal_areas(std::span<const Index> face, std::span<const Vec3> rest) {
-  const FaceRule& r = face.size() == 3 ? triangle3_rule() : triangle6_rule();
+  const FaceRule& r = face_rule(face.size());
   std::vector<std::pair<Index, double>> areas;
   for (const Index n : face) areas.emplace_back(n, 0.0);
   for (int q = 0; q < r.points; ++q) {

@@ -17,6 +17,10 @@ struct FaceRule {
 };
 const FaceRule& triangle3_rule();
 const FaceRule& triangle6_rule();
+// A bilinear face, four corners in turn; exact for the volume under it.
+const FaceRule& quadrangle4_rule();
+// The rule for the faces of a mesh, by their number of nodes.
+const FaceRule& face_rule(std::size_t nodes);
 // A flat cap next to a curved edge: nodes (apex, a, b, middle of ab); the edges to the apex are straight.
 const FaceRule& cap4_rule();
 // What lies between a curved edge (a, b, middle) and its chord.
@@ -25,7 +29,7 @@ const FaceRule& bulge3_rule();
 const FaceRule& fan2_rule();
 const FaceRule& fan3_rule();
 
-// Rest area that falls to each node of a face, integral of N_a dA [m^2]. 3 or 6 nodes.
+// Rest area that falls to each node of a face, integral of N_a dA [m^2]. 3, 4 (a quadrangle) or 6 nodes.
 std::vector<std::pair<Index, double>> nodal_areas(std::span<const Index> face, std::span<const Vec3> rest);
 
 // One function a face: V = 1/3 integral (x - origin) . n da [m^3]. Over a closed surface the sum is the

@@ -84,7 +84,12 @@ std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double ta
   for (Index s = 0; s < pool.stencils(); ++s) {
     const double V = pool.volume(s), factor = region.stiffness_factor(s);
     Index row[8];
-    for (std::size_t k = 0; k < corners; ++k) row[k] = row_of(pool.nodes()[s][k]);
+    double share[8] = {};  // integral of N_k
+    for (std::size_t k = 0; k < corners; ++k) {
+      row[k] = row_of(pool.nodes()[s][k]);
+      for (std::size_t l = 0; l < corners; ++l)
+        share[k] += pressure_mass(data, s, V, static_cast<int>(k), static_cast<int>(l));
+    }
     for (std::size_t k = 0; k < corners; ++k) {
       const int kk = static_cast<int>(k);
       terms[at(row[k])].push_back(per_corner ? std::pair(s * data.functions + kk, 1.0)
@@ -94,8 +99,8 @@ std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double ta
         volume[at(row[k])] += mass;
         if (row[k] < row[l]) continue;
         double c = mass * region.inverse_bulk;
-        if (tau > 0) c += tau / region.shear_modulus * (mass - V / static_cast<double>(corners * corners));
-        c /= factor;
+        if (tau > 0) c += tau / region.shear_modulus * (mass - share[k] * share[l] / V);
+          c /= factor;
         if (c != 0) compliance[{row[k], row[l]}] += c;
       }
     }

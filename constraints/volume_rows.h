@@ -38,8 +38,9 @@ std::shared_ptr<RowPool> element_volume_rows(const VolumeRegion& region);
 
 // One row a node of the region: phi_i = integral of N_i Phi with N_i linear (Frâncu et al. 2021, eq. for the
 // mixed P1-P1 element). C = M_p/kappa with the consistent mass matrix M_p, plus the polynomial-projection
-// stabilization (tau/mu) (M_e - V/16 11^T) of Dohrmann & Bochev 2004 when tau > 0; its rows sum to zero, so
-// the total volume is not affected. `corner_nodes` returns the global nodes the rows stand for.
+// stabilization (tau/mu) (M_e - m m^T/V), m_k the integral of N_k (V/4 on a tet), of Dohrmann & Bochev 2004
+// when tau > 0; its rows sum to zero, so the total volume is not affected. `corner_nodes` returns the global
+// nodes the rows stand for.
 std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double tau,
                                            std::vector<Index>* corner_nodes = nullptr);
 

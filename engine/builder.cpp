@@ -112,6 +112,29 @@ Result<void> Builder::add_regions(const BodyDef& def, BodyData& body) const {
   return {};
 }
 
+namespace {
+
+// Whether the cells of the mesh can carry the element.
+Result<void> check_element(const BodyDef& def) {
+  const bool hexahedra = def.mesh.cell_type == CellType::hex8;
+  if (hexahedra && def.element != Element::hex8) {
+    return Error{"body \"" + def.name +
+                 "\": a mesh of hexahedra needs element \"hex8\"; give a mesh of tetrahedra for the others"};
+  }
+  if (!hexahedra && def.element == Element::hex8) {
+    return Error{"body \"" + def.name +
+                 "\": element \"hex8\" needs a mesh of 8-node hexahedra and this one has tetrahedra; "
+                 "choose \"tet4_edge_smoothed\", \"tet4\" or \"tet10\""};
+  }
+  if (def.mesh.cell_type == CellType::tet10 && def.element != Element::tet10) {
+    return Error{"body \"" + def.name +
+                 "\": a Tet10 mesh needs element \"tet10\"; give a Tet4 mesh for linear tets"};
+  }
+  return {};
+}
+
+}  // namespace
+
 Result<void> Builder::add_body(const BodyDef& def) {
   for (const BodyData& other : bodies_) {
     if (other.name == def.name)
@@ -126,6 +149,7 @@ Result<void> Builder::add_body(const BodyDef& def) {
       warn("body \"" + def.name + "\": mesh " + def.mesh.source + ": " + finding.message);
     }
   }
+  if (auto r = check_element(def); !r) return r;
   BodyData body;
   body.name = def.name;
   body.element = def.element;
@@ -134,11 +158,10 @@ Result<void> Builder::add_body(const BodyDef& def) {
   if (def.element == Element::tet10) {
     body.mesh = to_tet10(def.mesh);
     body.reference = &tet10_element();
+  } else if (def.element == Element::hex8) {
+    body.mesh = def.mesh;
+    body.reference = &hex8_element();
   } else {
-    if (def.mesh.cell_type == CellType::tet10) {
-      return Error{"body \"" + def.name +
-                   "\": a Tet10 mesh needs element \"tet10\"; give a Tet4 mesh for linear tets"};
-    }
     body.mesh = def.mesh;
     body.reference = &tet4_element();
   }
@@ -203,8 +226,9 @@ static std::shared_ptr<const Material> for_stencils(std::shared_ptr<const Materi
 // own.
 Result<void> Builder::build_region(BodyData& body, RegionData& region) {
   const bool smoothed = body.element == Element::tet4_edge_smoothed;
+  // One point integrates whatever a linear tet has; the others need a function for each corner.
   const VolumeFunctions kind =
-      body.element == Element::tet10 ? VolumeFunctions::corners : VolumeFunctions::constant;
+      body.reference->points > 1 ? VolumeFunctions::corners : VolumeFunctions::constant;
   std::shared_ptr<const Material> energy;
   if (region.bulk_claimed) {
     energy = region.material->distortional();

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/mesh/cell_shape.h"
+
 namespace isochor {
 
 namespace {
@@ -20,6 +22,29 @@ std::array<double, 4> barycentric(const Mesh& mesh, const Index* cell, const Vec
   const double u = dot(p, cross(b, c)) / volume, v = dot(a, cross(p, c)) / volume,
                w = dot(a, cross(b, p)) / volume;
   return {1 - u - v - w, u, v, w};
+}
+
+// Coordinates of the point in a hexahedron by Newton's method, which may leave far points unfinished: they
+// are not inside then.
+Vec3 hex_coordinates(const Mesh& mesh, const Index* cell, const Vec3& point) {
+  Vec3 xi{};
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    Vec3 d[3] = {}, r = point;
+    for (std::size_t a = 0; a < 8; ++a) {
+      const Vec3& X = mesh.nodes[index(cell[a])];
+      const Vec3 g = hex_gradient(a, xi);
+      r -= hex_function(a, xi) * X;
+      for (int k = 0; k < 3; ++k) d[k] += g[k] * X;
+    }
+    const double j = dot(d[0], cross(d[1], d[2]));
+    if (!(j > 0)) return {9, 9, 9};
+    const Vec3 step =
+        (1 / j) * Vec3{dot(r, cross(d[1], d[2])), dot(r, cross(d[2], d[0])), dot(r, cross(d[0], d[1]))};
+    xi += step;
+    if (dot(step, step) < 1e-28) break;
+    if (dot(xi, xi) > 27) return {9, 9, 9};
+  }
+  return xi;
 }
 
 // Shape functions of the cell, taken with straight edges.
@@ -73,6 +98,18 @@ MaterialPoint locate(const Mesh& mesh, const Vec3& point) {
   MaterialPoint held;
   for (std::size_t c = 0; c + stride <= mesh.cells.size(); c += stride) {
     const Index* cell = mesh.cells.data() + c;
+    if (mesh.cell_type == CellType::hex8) {
+      const Vec3 xi = hex_coordinates(mesh, cell, point);
+      const double least = 0.5 * (1 - std::max({std::abs(xi.x), std::abs(xi.y), std::abs(xi.z)}));
+      if (least <= inside) continue;
+      inside = least;
+      held.count = 8;
+      for (std::size_t a = 0; a < 8; ++a) {
+        held.nodes[a] = cell[a];
+        held.weights[a] = hex_function(a, xi);
+      }
+      continue;
+    }
     const auto l = barycentric(mesh, cell, point);
     const double least = *std::min_element(l.begin(), l.end());
     if (least > inside) {

@@ -33,8 +33,27 @@ constexpr std::array<std::array<int, 4>, 8> tet10_split = {{
     {6, 7, 4, 8},
 }};
 
+// Faces of a hexahedron seen from outside, and a way to cut it into tetrahedra around one diagonal.
+constexpr std::array<std::array<int, 4>, 6> hex_faces = {{
+    {0, 4, 7, 3},
+    {1, 2, 6, 5},
+    {0, 1, 5, 4},
+    {3, 7, 6, 2},
+    {0, 3, 2, 1},
+    {4, 5, 6, 7},
+}};
+constexpr std::array<std::array<int, 4>, 6> hex_split = {{
+    {0, 1, 2, 6},
+    {0, 2, 3, 6},
+    {0, 3, 7, 6},
+    {0, 7, 4, 6},
+    {0, 4, 5, 6},
+    {0, 5, 1, 6},
+}};
+
 struct Face {
-  std::array<Index, 3> key;  // sorted corners: both sides of an inner face agree on it
+  std::array<Index, 4>
+      key;  // sorted corners (-1 before those of a triangle): both sides of an inner face agree
   Index cell;
   int side;
 };
@@ -45,9 +64,16 @@ std::vector<Face> boundary_faces(const Mesh& mesh) {
   all.reserve(static_cast<std::size_t>(mesh.cell_count()) * 4);
   for (Index cell = 0; cell < mesh.cell_count(); ++cell) {
     const Index* nodes = &mesh.cells[static_cast<std::size_t>(cell) * stride];
-    for (int side = 0; side < 4; ++side) {
-      const auto& c = tet_faces[static_cast<std::size_t>(side)].corner;
-      std::array<Index, 3> key = {nodes[c[0]], nodes[c[1]], nodes[c[2]]};
+    const bool hexahedral = mesh.cell_type == CellType::hex8;
+    for (int side = 0; side < (hexahedral ? 6 : 4); ++side) {
+      std::array<Index, 4> key = {-1, -1, -1, -1};
+      if (hexahedral) {
+        const auto& c = hex_faces[static_cast<std::size_t>(side)];
+        for (std::size_t k = 0; k < 4; ++k) key[k] = nodes[c[k]];
+      } else {
+        const auto& c = tet_faces[static_cast<std::size_t>(side)].corner;
+        for (std::size_t k = 0; k < 3; ++k) key[k] = nodes[c[k]];
+      }
       std::sort(key.begin(), key.end());
       all.push_back({key, cell, side});
     }
@@ -103,10 +129,17 @@ std::vector<Index> add_page_mesh(PageScene& scene, const Mesh& mesh, const PageP
     scene.triangle_part.push_back(part_index);
     scene.triangle_edges.push_back(edges);
   };
-  const bool quadratic = mesh.cell_type == CellType::tet10;
+  const bool quadratic = mesh.cell_type == CellType::tet10, hexahedral = mesh.cell_type == CellType::hex8;
   const std::size_t stride = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
   for (const Face& face : boundary_faces(mesh)) {
     const Index* nodes = &mesh.cells[static_cast<std::size_t>(face.cell) * stride];
+    if (hexahedral) {
+      const auto& c = hex_faces[static_cast<std::size_t>(face.side)];
+      // The diagonal is no mesh edge.
+      triangle(nodes[c[0]], nodes[c[1]], nodes[c[2]], 0b011);
+      triangle(nodes[c[0]], nodes[c[2]], nodes[c[3]], 0b110);
+      continue;
+    }
     const TetFace& local = tet_faces[static_cast<std::size_t>(face.side)];
     const auto corner = [&](std::size_t k) { return nodes[local.corner[k]]; };
     const auto middle = [&](std::size_t k) { return nodes[local.middle[k]]; };
@@ -127,7 +160,9 @@ std::vector<Index> add_page_mesh(PageScene& scene, const Mesh& mesh, const PageP
       const auto put = [&](const auto& local) {
         for (const int k : local) scene.cells.push_back(vertices.of(nodes[k]));
       };
-      if (quadratic) {
+      if (hexahedral) {
+        for (const auto& piece : hex_split) put(piece);
+      } else if (quadratic) {
         for (const auto& piece : tet10_split) put(piece);
       } else {
         put(std::array<int, 4>{0, 1, 2, 3});

@@ -4,6 +4,8 @@
 #include <map>
 #include <utility>
 
+#include "engine/mesh/cell_shape.h"
+
 namespace isochor {
 
 namespace {
@@ -69,6 +71,21 @@ ReferenceElement make_tet10() {
   return e;
 }
 
+ReferenceElement make_hex8() {
+  ReferenceElement e;
+  e.nodes = e.corners = e.points = 8;
+  for (const auto& sign : kHexSign) {
+    const Vec3 xi = kHexGauss * Vec3{1.0 * sign[0], 1.0 * sign[1], 1.0 * sign[2]};
+    e.weight.push_back(1);
+    for (std::size_t a = 0; a < 8; ++a) {
+      e.shape.push_back(hex_function(a, xi));
+      e.shape_gradient.push_back(hex_gradient(a, xi));
+    }
+  }
+  e.corner_shape = e.shape;
+  return e;
+}
+
 // dX/dxi at a point, its determinant and inverse.
 struct RestMap {
   Mat3 inverse;
@@ -103,6 +120,11 @@ const ReferenceElement& tet4_element() {
 
 const ReferenceElement& tet10_element() {
   static const ReferenceElement element = make_tet10();
+  return element;
+}
+
+const ReferenceElement& hex8_element() {
+  static const ReferenceElement element = make_hex8();
   return element;
 }
 

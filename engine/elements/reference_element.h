@@ -6,7 +6,7 @@
 
 namespace isochor {
 
-// A hexahedron or another element joins by filling in one more of these.
+// Another element joins by filling in one more of these.
 struct ReferenceElement {
   int nodes = 0;
   int points = 0;
@@ -19,6 +19,8 @@ struct ReferenceElement {
 
 const ReferenceElement& tet4_element();   // one point
 const ReferenceElement& tet10_element();  // 14 points, exact to degree 5 (Walkington 2000)
+const ReferenceElement&
+hex8_element();  // 2 x 2 x 2 Gauss points on [-1, 1]^3, exact to degree 3 in each direction
 
 // Which volume functions a stencil offers.
 enum class VolumeFunctions : std::uint8_t {

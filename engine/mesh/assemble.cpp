@@ -4,6 +4,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "engine/mesh/cell_shape.h"
 #include "engine/mesh/raw_mesh.h"
 #include "engine/mesh/tet_shape.h"
 
@@ -27,20 +28,21 @@ std::string list(std::span<const std::int64_t> numbers, std::int64_t count) {
   return count > static_cast<std::int64_t>(numbers.size()) ? text + ", ..." : text;
 }
 
-void require_tetrahedra(const RawMesh& raw) {
+void require_cells(const RawMesh& raw) {
   if (!raw.foreign_cells.empty()) {
     std::string types;
     for (const auto& [name, count] : raw.foreign_cells) {
       types += (types.empty() ? "" : ", ") + join(count, " ", name);
     }
-    fail(raw, "the file has volume cells that are no 4- or 10-node tetrahedra: " + types,
-         "mesh the body with tetrahedra (in Gmsh without recombination, order 1 or 2)");
+    fail(raw,
+         "the file has volume cells that are neither 4- or 10-node tetrahedra nor 8-node hexahedra: " + types,
+         "mesh the body with one of these");
   }
   if (raw.cells.empty()) {
     fail(raw,
-         raw.flat_cells > 0
-             ? join("the file has no tetrahedra, only ", raw.flat_cells, " faces, edges or points")
-             : std::string("the file has no tetrahedra"),
+         raw.flat_cells > 0 ? join("the file has no tetrahedra or hexahedra, only ", raw.flat_cells,
+                                   " faces, edges or points")
+                            : std::string("the file has no tetrahedra or hexahedra"),
          "create the 3D mesh and export it with its volume (in Gmsh: a physical volume, or 'save all')");
   }
 }
@@ -99,17 +101,28 @@ void order_mid_edges(RawMesh& raw, Mesh& mesh) {
                         {}});
 }
 
+bool is_inverted(const RawMesh& raw, const Index* n) {
+  if (raw.cell_width != 8)
+    return volume6(raw.nodes[at(n[0])], raw.nodes[at(n[1])], raw.nodes[at(n[2])], raw.nodes[at(n[3])]) < 0;
+  // The Jacobian in the middle: positive and negative corners may both occur in a bad hexahedron.
+  Vec3 d[3] = {};
+  for (std::size_t a = 0; a < 8; ++a) {
+    for (std::size_t k = 0; k < 3; ++k) d[k] += static_cast<double>(kHexSign[a][k]) * raw.nodes[at(n[a])];
+  }
+  return dot(d[0], cross(d[1], d[2])) < 0;
+}
+
 void turn_inverted(RawMesh& raw, Mesh& mesh) {
   const auto width = static_cast<std::size_t>(raw.cell_width);
   std::int64_t count = 0;
   std::vector<std::int64_t> examples;
   for (std::size_t c = 0; c * width < raw.cells.size(); ++c) {
     Index* n = &raw.cells[c * width];
-    if (!(volume6(raw.nodes[at(n[0])], raw.nodes[at(n[1])], raw.nodes[at(n[2])], raw.nodes[at(n[3])]) < 0))
-      continue;
+    if (!is_inverted(raw, n)) continue;
     std::array<Index, 10> old{};
     std::copy_n(n, width, old.begin());
-    for (std::size_t k = 0; k < width; ++k) n[k] = old[at(turned_over[k])];
+    // A hexahedron is turned over by exchanging its bottom and its top.
+    for (std::size_t k = 0; k < width; ++k) n[k] = old[width == 8 ? (k + 4) % 8 : at(turned_over[k])];
     if (++count <= static_cast<std::int64_t>(most_examples)) examples.push_back(raw.cell_label[c]);
   }
   if (count == 0) return;
@@ -191,15 +204,20 @@ EdgeMiddles edge_middles(const RawMesh& raw) {
 // Faces get the width of the cells. Mid-edge nodes are taken from the cells, so that a file with straight
 // faces on curved cells, or with its own order, still gives the same surface.
 void adopt_surfaces(RawMesh& raw, Mesh& mesh) {
+  // Faces of the other kind cannot bound these cells.
+  if (raw.cell_width == 8) std::swap(raw.surfaces, raw.quadrangles);
+  for (const auto& [tag, others] : raw.quadrangles)
+    raw.foreign_faces += static_cast<std::int64_t>(others.faces.size()) / others.width;
   for (const auto& [tag, name] : raw.surface_name) raw.surfaces[tag];
-  const std::size_t width = raw.cell_width == 10 ? 6 : 3;
+  const std::size_t width = raw.cell_width == 10 ? 6 : (raw.cell_width == 8 ? 4 : 3);
+  const std::size_t corners = width == 4 ? 4 : 3;
   const EdgeMiddles middle = width == 6 && !raw.surfaces.empty() ? edge_middles(raw) : EdgeMiddles{};
   for (const auto& [tag, surface] : raw.surfaces) {
     const auto from = static_cast<std::size_t>(surface.width);
     std::vector<Index> faces;
     faces.reserve(from == 0 ? 0 : surface.faces.size() / from * width);
     for (std::size_t f = 0; f < surface.faces.size(); f += from) {
-      faces.insert(faces.end(), &surface.faces[f], &surface.faces[f] + 3);
+      faces.insert(faces.end(), &surface.faces[f], &surface.faces[f] + corners);
       for (std::size_t k = 0; k < 3 && width == 6; ++k) {
         const auto found = middle.find(edge_key(surface.faces[f + k], surface.faces[f + (k + 1) % 3]));
         // -1 marks a face that lies on no cell: it goes with the unused nodes below.
@@ -329,10 +347,12 @@ void drop_plain(std::vector<std::int64_t>& labels) {
 }  // namespace
 
 Mesh assemble(RawMesh raw, double scale) {
-  require_tetrahedra(raw);
+  require_cells(raw);
   Mesh mesh;
   mesh.source = raw.file;
-  mesh.cell_type = raw.cell_width == 10 ? CellType::tet10 : CellType::tet4;
+  mesh.cell_type = raw.cell_width == 10  ? CellType::tet10
+                   : raw.cell_width == 8 ? CellType::hex8
+                                         : CellType::tet4;
   order_mid_edges(raw, mesh);
   turn_inverted(raw, mesh);
   name_regions(raw, mesh);
@@ -342,8 +362,8 @@ Mesh assemble(RawMesh raw, double scale) {
   if (raw.foreign_faces > 0) {
     mesh.notes.push_back(
         {"foreign-face",
-         join(raw.foreign_faces, " faces that no such tetrahedron can have (quadrangles or another ",
-              "order) were left out"),
+         join(raw.foreign_faces, " faces that no cell of this mesh can have (triangles on hexahedra, ",
+              "quadrangles on tetrahedra or another order) were left out"),
          raw.foreign_faces,
          {}});
   }

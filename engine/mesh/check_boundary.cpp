@@ -8,39 +8,39 @@
 namespace isochor::mesh_files {
 
 std::vector<CellFace> sorted_cell_faces(const Mesh& mesh) {
-  const auto width = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
+  const CellShape& shape = cell_shape(mesh.cell_type);
   std::vector<CellFace> faces;
-  faces.reserve(4 * at(mesh.cell_count()));
+  faces.reserve(shape.sides * at(mesh.cell_count()));
   for (Index c = 0; c < mesh.cell_count(); ++c) {
-    const Index* n = &mesh.cells[width * at(c)];
-    for (std::size_t f = 0; f < 4; ++f) {
-      std::array<Index, 3> k{n[tet_faces[f][0]], n[tet_faces[f][1]], n[tet_faces[f][2]]};
-      bool odd = false;
-      const auto order = [&](std::size_t a, std::size_t b) {
-        if (k[a] <= k[b]) return;
-        std::swap(k[a], k[b]);
-        odd = !odd;
-      };
-      order(0, 1);
-      order(1, 2);
-      order(0, 1);
-      faces.push_back({k, c, static_cast<std::int8_t>(f), static_cast<std::int8_t>(odd ? 1 : 0)});
+    for (std::size_t f = 0; f < shape.sides; ++f) {
+      CellFace face{{}, c, static_cast<std::int8_t>(f), 0};
+      const FaceCorners around = outward_corners(mesh, face);
+      std::size_t least = 0;
+      for (std::size_t k = 1; k < shape.side_corners; ++k) least = around[k] < around[least] ? k : least;
+      const Index next = around[(least + 1) % shape.side_corners],
+                  previous = around[(least + shape.side_corners - 1) % shape.side_corners];
+      face.odd = next > previous ? 1 : 0;
+      face.corners = around;
+      std::sort(face.corners.begin(), face.corners.end());
+      faces.push_back(face);
     }
   }
   std::sort(faces.begin(), faces.end());
   return faces;
 }
 
-std::array<Index, 3> outward_corners(const Mesh& mesh, const CellFace& face) {
+FaceCorners outward_corners(const Mesh& mesh, const CellFace& face) {
   const auto width = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
+  const CellShape& shape = cell_shape(mesh.cell_type);
   const Index* n = &mesh.cells[width * at(face.cell)];
-  const auto& corners = tet_faces[at(face.local)];
-  return {n[corners[0]], n[corners[1]], n[corners[2]]};
+  FaceCorners corners{-1, -1, -1, -1};
+  for (std::size_t k = 0; k < shape.side_corners; ++k) corners[k] = n[shape.side[at(face.local)][k]];
+  return corners;
 }
 
 namespace {
 
-// An edge of a triangulated surface and the triangle it belongs to.
+// An edge of a surface and the face it belongs to.
 struct SurfaceEdge {
   std::array<Index, 2> ends;  // ascending
   Index face = 0;
@@ -49,14 +49,19 @@ struct SurfaceEdge {
   }
 };
 
-using Triangles = std::vector<std::array<Index, 3>>;
+using Faces = std::vector<FaceCorners>;
 
-std::vector<SurfaceEdge> sorted_edges(const Triangles& triangles) {
+std::size_t corner_count(const FaceCorners& face) {
+  return face[3] < 0 ? 3 : 4;
+}
+
+std::vector<SurfaceEdge> sorted_edges(const Faces& faces) {
   std::vector<SurfaceEdge> edges;
-  edges.reserve(3 * triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [a, b] = std::minmax(triangles[t][k], triangles[t][(k + 1) % 3]);
+  edges.reserve(4 * faces.size());
+  for (std::size_t t = 0; t < faces.size(); ++t) {
+    const std::size_t corners = corner_count(faces[t]);
+    for (std::size_t k = 0; k < corners; ++k) {
+      const auto [a, b] = std::minmax(faces[t][k], faces[t][(k + 1) % corners]);
       edges.push_back({{a, b}, static_cast<Index>(t)});
     }
   }
@@ -93,7 +98,7 @@ std::vector<CellFace> boundary_faces(const Mesh& mesh, const std::vector<CellFac
   return boundary;
 }
 
-void check_edges(const Mesh& mesh, const Triangles& triangles, const std::vector<SurfaceEdge>& edges,
+void check_edges(const Mesh& mesh, const Faces& faces, const std::vector<SurfaceEdge>& edges,
                  MeshReport& report) {
   Tally crowded;
   for_each_edge(edges, [&](std::size_t first, std::size_t last) {
@@ -101,12 +106,11 @@ void check_edges(const Mesh& mesh, const Triangles& triangles, const std::vector
   });
   crowded.report(report, Severity::warning, "non-manifold-edge", "boundary edge joins", "boundary edges join",
                  "more than two boundary faces; parts hinge there, thicken the joint", "at node ");
-  // Corners of triangles that share an edge at a node are joined; a node with two fans of triangles is
-  // pinched.
-  Groups fans(3 * triangles.size());
+  // Corners of faces that share an edge at a node are joined; a node with two fans of faces is pinched.
+  Groups fans(4 * faces.size());
   const auto corner = [&](Index face, Index node) {
-    const auto& t = triangles[at(face)];
-    return 3 * face + (t[0] == node ? 0 : (t[1] == node ? 1 : 2));
+    const FaceCorners& f = faces[at(face)];
+    return 4 * face + static_cast<Index>(std::find(f.begin(), f.end(), node) - f.begin());
   };
   for_each_edge(edges, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first + 1; i < last; ++i) {
@@ -116,8 +120,9 @@ void check_edges(const Mesh& mesh, const Triangles& triangles, const std::vector
   });
   std::vector<Index> fan(mesh.nodes.size(), -1);
   std::vector<bool> pinched(mesh.nodes.size(), false);
-  for (Index c = 0; c < static_cast<Index>(3 * triangles.size()); ++c) {
-    const Index node = triangles[at(c / 3)][at(c % 3)];
+  for (Index c = 0; c < static_cast<Index>(4 * faces.size()); ++c) {
+    const Index node = faces[at(c / 4)][at(c % 4)];
+    if (node < 0) continue;
     const Index root = fans.root(c);
     if (fan[at(node)] >= 0 && fan[at(node)] != root) pinched[at(node)] = true;
     fan[at(node)] = root;
@@ -138,16 +143,21 @@ double cone6(const Mesh& mesh, const CellFace& face, const Vec3& apex) {
   const auto cone = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
     return dot(cross(a - apex, b - apex), c - apex);
   };
-  const auto& corner = tet_faces[at(face.local)];
-  std::array<Vec3, 3> x, mid;
-  for (std::size_t k = 0; k < 3; ++k) x[k] = mesh.nodes[at(n[corner[k]])];
+  const auto& corner = cell_shape(mesh.cell_type).side[at(face.local)];
+  std::array<Vec3, 4> x, mid;
+  for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.nodes[at(n[corner[k]])];
+  // What a bilinear face bounds is the mean of its two ways to be cut into triangles.
+  if (width == 8) {
+    return 0.5 * (cone(x[0], x[1], x[2]) + cone(x[0], x[2], x[3]) + cone(x[0], x[1], x[3]) +
+                  cone(x[1], x[2], x[3]));
+  }
   const double one = cone(x[0], x[1], x[2]);
   if (width == 4) return one;
   for (std::size_t k = 0; k < 3; ++k) {
-    const int a = corner[k], b = corner[(k + 1) % 3];
+    const std::size_t a = corner[k], b = corner[(k + 1) % 3];
     for (std::size_t e = 0; e < 6; ++e) {
-      const bool same =
-          (tet_edges[e][0] == a && tet_edges[e][1] == b) || (tet_edges[e][0] == b && tet_edges[e][1] == a);
+      const auto& edge = kTetShape.edge[e];
+      const bool same = (edge[0] == a && edge[1] == b) || (edge[0] == b && edge[1] == a);
       if (same) mid[k] = mesh.nodes[at(n[4 + e])];
     }
   }
@@ -180,12 +190,15 @@ void check_cavities(const Mesh& mesh, const std::vector<SurfaceEdge>& edges,
                   "with a volume of " + sizes + " m^3", "next to cell ");
 }
 
-Triangles corners_of(const MeshSurface& surface, std::size_t width) {
-  Triangles triangles;
+Faces corners_of(const MeshSurface& surface, CellType type) {
+  const auto width = static_cast<std::size_t>(nodes_per_face(type));
+  Faces faces;
   for (std::size_t f = 0; f < surface.faces.size(); f += width) {
-    triangles.push_back({surface.faces[f], surface.faces[f + 1], surface.faces[f + 2]});
+    FaceCorners corners{-1, -1, -1, -1};
+    std::copy_n(&surface.faces[f], cell_shape(type).side_corners, corners.begin());
+    faces.push_back(corners);
   }
-  return triangles;
+  return faces;
 }
 
 // How many closed loops the edges form that only one face has.
@@ -207,15 +220,14 @@ void check_surface(const Mesh& mesh, const MeshSurface& surface, const std::vect
   const auto add = [&](Severity severity, const char* code, std::int64_t count, const std::string& text) {
     report.findings.push_back({severity, code, join("surface '", surface.name, "' ", text), count, {}});
   };
-  const Triangles triangles = corners_of(surface, static_cast<std::size_t>(nodes_per_face(mesh.cell_type)));
-  if (triangles.empty())
-    return add(Severity::warning, "empty-surface", 1, "has no faces; nothing can act on it");
-  Triangles sorted = triangles;
+  const Faces given = corners_of(surface, mesh.cell_type);
+  if (given.empty()) return add(Severity::warning, "empty-surface", 1, "has no faces; nothing can act on it");
+  Faces sorted = given;
   Tally foreign;
   for (auto& t : sorted) {
     std::sort(t.begin(), t.end());
     const auto found = std::lower_bound(faces.begin(), faces.end(), CellFace{t, -1, 0, 0});
-    if (found == faces.end() || found->corners != t) foreign.add(node_label(mesh, t[0]));
+    if (found == faces.end() || found->corners != t) foreign.add(node_label(mesh, t[0] < 0 ? t[1] : t[0]));
   }
   if (foreign.count() > 0) {
     add(Severity::warning, "surface-off-mesh", foreign.count(),
@@ -230,7 +242,7 @@ void check_surface(const Mesh& mesh, const MeshSurface& surface, const std::vect
     add(Severity::warning, "repeated-face", repeats,
         join("has ", repeats, " faces twice, so that loads on it count twice; remove the copies"));
   }
-  const std::int64_t loops = count_loops(mesh, sorted_edges(triangles));
+  const std::int64_t loops = count_loops(mesh, sorted_edges(given));
   if (loops > 0) {
     add(Severity::note, "open-surface", loops,
         join("is open, with ", loops, loops == 1 ? " boundary loop" : " boundary loops",
@@ -242,11 +254,11 @@ void check_surface(const Mesh& mesh, const MeshSurface& surface, const std::vect
 
 void check_boundary(const Mesh& mesh, const std::vector<CellFace>& faces, MeshReport& report) {
   const std::vector<CellFace> boundary = boundary_faces(mesh, faces, report);
-  Triangles triangles;
-  triangles.reserve(boundary.size());
-  for (const CellFace& face : boundary) triangles.push_back(outward_corners(mesh, face));
-  const std::vector<SurfaceEdge> edges = sorted_edges(triangles);
-  check_edges(mesh, triangles, edges, report);
+  Faces outward;
+  outward.reserve(boundary.size());
+  for (const CellFace& face : boundary) outward.push_back(outward_corners(mesh, face));
+  const std::vector<SurfaceEdge> edges = sorted_edges(outward);
+  check_edges(mesh, outward, edges, report);
   check_cavities(mesh, edges, boundary, report);
 }
 

@@ -100,16 +100,66 @@ double curved_volume(const Mesh& mesh, Index cell) {
   return sum / 24;
 }
 
+std::array<Vec3, 3> hex_tangents(const std::array<Vec3, 8>& x, const Vec3& xi) {
+  std::array<Vec3, 3> d{};
+  for (std::size_t a = 0; a < 8; ++a) {
+    const Vec3 g = hex_gradient(a, xi);
+    for (int k = 0; k < 3; ++k) d[at(k)] += g[k] * x[a];
+  }
+  return d;
+}
+
+Vec3 hex_corner(std::size_t a) {
+  return {1.0 * kHexSign[a][0], 1.0 * kHexSign[a][1], 1.0 * kHexSign[a][2]};
+}
+
+// The angle between the two faces that meet in the edge along `along`, the other edges there being a and b.
+double dihedral_deg(const Vec3& along, const Vec3& a, const Vec3& b) {
+  const Vec3 n = cross(along, a), m = cross(along, b);
+  const double scale = length(n) * length(m);
+  return scale > 0 ? std::acos(std::clamp(dot(n, m) / scale, -1.0, 1.0)) * 180 / std::numbers::pi : 0;
+}
+
+// A hexahedron: quality is its worst corner's Jacobian over the product of the edges there (1 for a brick).
+Shape hex_shape_of(const std::array<Vec3, 8>& x, bool& tangled) {
+  Shape s;
+  s.quality = 1;
+  s.smallest_deg = 180;
+  for (const auto& [a, b] : kHexShape.edge) s.longest = std::max(s.longest, length(x[b] - x[a]));
+  const double limit = flat_limit * s.longest * s.longest * s.longest;
+  tangled = false;
+  for (std::size_t corner = 0; corner < 8; ++corner) {
+    const auto at_corner = hex_tangents(x, hex_corner(corner));
+    const double j = dot(at_corner[0], cross(at_corner[1], at_corner[2]));
+    const double edges = length(at_corner[0]) * length(at_corner[1]) * length(at_corner[2]);
+    s.quality = std::min(s.quality, edges > 0 ? j / edges : 0.0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Edges that leave the corner, not those along the axes.
+      const double turn = kHexSign[corner][(k + 1) % 3] * kHexSign[corner][(k + 2) % 3];
+      s.smallest_deg = std::min(
+          s.smallest_deg, dihedral_deg(at_corner[k], at_corner[(k + 1) % 3], turn * at_corner[(k + 2) % 3]));
+    }
+    const auto inside = hex_tangents(x, kHexGauss * hex_corner(corner));
+    const double weight = dot(inside[0], cross(inside[1], inside[2]));
+    s.volume6 += 6 * weight;
+    tangled = tangled || !(8 * j > limit) || !(8 * weight > limit);
+  }
+  return s;
+}
+
 void check_shapes(const Mesh& mesh, MeshReport& report) {
   const auto width = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
+  const bool hexahedral = mesh.cell_type == CellType::hex8;
   const bool quadratic = mesh.cell_type == CellType::tet10;
   Tally flat, inverted, tangled, slivers;
   report.worst_quality = 1;
   report.smallest_dihedral_deg = 180;
   for (Index c = 0; c < mesh.cell_count(); ++c) {
-    std::array<Vec3, 4> x;
-    for (std::size_t k = 0; k < 4; ++k) x[k] = mesh.nodes[at(mesh.cells[width * at(c) + k])];
-    const Shape s = shape_of(x);
+    std::array<Vec3, 8> x{};
+    for (std::size_t k = 0; k < (hexahedral ? 8 : 4); ++k)
+      x[k] = mesh.nodes[at(mesh.cells[width * at(c) + k])];
+    bool folded = false;
+    const Shape s = hexahedral ? hex_shape_of(x, folded) : shape_of({x[0], x[1], x[2], x[3]});
     report.volume += quadratic ? curved_volume(mesh, c) : s.volume6 / 6;
     report.worst_quality = std::min(report.worst_quality, s.quality);
     report.smallest_dihedral_deg = std::min(report.smallest_dihedral_deg, s.smallest_deg);
@@ -118,7 +168,7 @@ void check_shapes(const Mesh& mesh, MeshReport& report) {
       flat.add(cell_label(mesh, c));
     } else if (s.volume6 < 0) {
       inverted.add(cell_label(mesh, c));
-    } else if (quadratic && is_tangled(mesh, c, s.longest)) {
+    } else if (folded || (quadratic && is_tangled(mesh, c, s.longest))) {
       tangled.add(cell_label(mesh, c));
     } else if (s.quality < poor_quality || s.smallest_deg < poor_dihedral_deg) {
       slivers.add(cell_label(mesh, c));
@@ -127,9 +177,13 @@ void check_shapes(const Mesh& mesh, MeshReport& report) {
   flat.report(report, Severity::error, "degenerate-cell", "cell has", "cells have",
               "no volume; remove or remesh");
   inverted.report(report, Severity::error, "inverted-cell", "cell is", "cells are",
-                  "inverted; exchange two corners (and the mid-edge nodes that go with them)");
-  tangled.report(report, Severity::error, "tangled-cell", "curved cell folds", "curved cells fold",
-                 "over themselves (Jacobian <= 0); straighten their edges or optimize the mesh of order 2");
+                  hexahedral ? "inverted; exchange their bottom and top corners"
+                             : "inverted; exchange two corners (and the mid-edge nodes that go with them)");
+  tangled.report(
+      report, Severity::error, "tangled-cell", hexahedral ? "cell folds" : "curved cell folds",
+      hexahedral ? "cells fold" : "curved cells fold",
+      hexahedral ? "over themselves (Jacobian <= 0 at a corner or an integration point); untangle the mesh"
+                 : "over themselves (Jacobian <= 0); straighten their edges or optimize the mesh of order 2");
   slivers.report(report, Severity::warning, "sliver", "cell is", "cells are",
                  join("nearly flat (quality down to ", report.worst_quality, ", dihedral angle down to ",
                       report.smallest_dihedral_deg, " degrees); optimize the mesh"));
@@ -137,10 +191,12 @@ void check_shapes(const Mesh& mesh, MeshReport& report) {
 
 void check_duplicates(const Mesh& mesh, MeshReport& report) {
   const auto width = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
-  std::vector<std::pair<std::array<Index, 4>, Index>> key(at(mesh.cell_count()));
+  const std::size_t corner_count = cell_shape(mesh.cell_type).corners;
+  std::vector<std::pair<std::array<Index, 8>, Index>> key(at(mesh.cell_count()));
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     auto& corners = key[at(c)].first;
-    std::copy_n(&mesh.cells[width * at(c)], 4, corners.begin());
+    corners.fill(-1);
+    std::copy_n(&mesh.cells[width * at(c)], corner_count, corners.begin());
     std::sort(corners.begin(), corners.end());
     key[at(c)].second = c;
   }

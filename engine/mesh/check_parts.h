@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/mesh/cell_shape.h"
 #include "engine/mesh/cursor.h"
 #include "engine/mesh/tet_shape.h"
 #include "isochor/mesh_io.h"
@@ -49,12 +50,15 @@ class Groups {
   std::vector<Index> parent_;
 };
 
+// Three corners, or four; the last of a triangle is -1.
+using FaceCorners = std::array<Index, 4>;
+
 // A face of a cell: sorted corners to compare, and where it comes from.
 struct CellFace {
-  std::array<Index, 3> corners;  // ascending
+  FaceCorners corners{};  // ascending, so -1 comes first for a triangle
   Index cell = 0;
-  std::int8_t local = 0;  // row of tet_faces
-  std::int8_t odd = 0;    // whether sorting the corners was an odd permutation
+  std::int8_t local = 0;  // which side of the cell
+  std::int8_t odd = 0;    // whether, from the smallest corner on, it runs to the larger neighbor first
   friend bool operator<(const CellFace& a, const CellFace& b) {
     return a.corners != b.corners ? a.corners < b.corners : a.cell < b.cell;
   }
@@ -62,12 +66,12 @@ struct CellFace {
 std::vector<CellFace> sorted_cell_faces(const Mesh& mesh);
 
 // Corners of a face, seen from outside of its cell.
-std::array<Index, 3> outward_corners(const Mesh& mesh, const CellFace& face);
+FaceCorners outward_corners(const Mesh& mesh, const CellFace& face);
 
 // Arrays of the right length, indices in range, finite numbers. Nothing else may run on a mesh that fails
 // here.
 bool check_arrays(const Mesh& mesh, MeshReport& report);
-// Volumes, quality, tangled Tet10, duplicates, regions.
+// Volumes, quality, tangled Tet10 and Hex8, duplicates, regions.
 void check_cells(const Mesh& mesh, MeshReport& report);
 // Box, units, coincident and unused nodes, parts.
 void check_nodes(const Mesh& mesh, MeshReport& report);

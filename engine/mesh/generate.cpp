@@ -3,6 +3,7 @@
 #include <map>
 
 #include "engine/base.h"
+#include "engine/mesh/cell_shape.h"
 
 namespace isochor {
 
@@ -14,6 +15,32 @@ constexpr int kFaceEdge[3][2] = {{0, 1}, {1, 2}, {2, 0}};
 // The six Kuhn tets of a cube whose corners are numbered by bits x + 2 y + 4 z.
 constexpr int kKuhn[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7},
                              {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+
+// Cells of a box, and their outer sides under the names of box_mesh.
+template <class NodeNumber>
+void add_hexahedra(Mesh& mesh, const std::array<Index, 3>& count, const NodeNumber& number) {
+  mesh.cell_type = CellType::hex8;
+  // The sides of a cell come in the order x0, x1, y0, y1, z0, z1.
+  for (Index k = 0; k < count[2]; ++k) {
+    for (Index j = 0; j < count[1]; ++j) {
+      for (Index i = 0; i < count[0]; ++i) {
+        Index n[8];
+        for (std::size_t a = 0; a < 8; ++a) {
+          const auto& s = kHexSign[a];
+          n[a] = number(i + (s[0] + 1) / 2, j + (s[1] + 1) / 2, k + (s[2] + 1) / 2);
+        }
+        mesh.cells.insert(mesh.cells.end(), n, n + 8);
+        const Index cell[3] = {i, j, k};
+        for (std::size_t side = 0; side < 6; ++side) {
+          const Index border = side % 2 == 0 ? 0 : count[side / 2] - 1;
+          if (cell[side / 2] != border) continue;
+          for (const std::size_t corner : kHexShape.side[side])
+            mesh.surfaces[side].faces.push_back(n[corner]);
+        }
+      }
+    }
+  }
+}
 
 }  // namespace
 
@@ -52,6 +79,10 @@ Result<Mesh> box_mesh(const BoxMeshDef& def) {
     }
   }
   mesh.surfaces = {{"x0", {}}, {"x1", {}}, {"y0", {}}, {"y1", {}}, {"z0", {}}, {"z1", {}}};
+  if (def.cell_type == CellType::hex8) {
+    add_hexahedra(mesh, {nx, ny, nz}, id);
+    return mesh;
+  }
   for (Index k = 0; k < nz; ++k) {
     for (Index j = 0; j < ny; ++j) {
       for (Index i = 0; i < nx; ++i) {
@@ -86,7 +117,7 @@ Result<Mesh> box_mesh(const BoxMeshDef& def) {
 }
 
 Mesh to_tet10(const Mesh& mesh) {
-  if (mesh.cell_type == CellType::tet10) return mesh;
+  if (mesh.cell_type != CellType::tet4) return mesh;
   Mesh out = mesh;
   out.cell_type = CellType::tet10;
   out.cells.clear();

@@ -9,7 +9,8 @@ void RawMesh::add_cell(const Cursor& at, std::int64_t label, std::int64_t tag,
   const int width = static_cast<int>(file_nodes.size());
   if (cell_width != 0 && cell_width != width) {
     at.fail(join("cell ", label, " has ", width, " nodes but the cells before it have ", cell_width),
-            "a mesh must be of one order: export all tetrahedra with 4 or all with 10 nodes");
+            "a mesh must be of one kind and one order: export all cells as tetrahedra with 4, as tetrahedra "
+            "with 10 or as hexahedra with 8 nodes");
   }
   cell_width = width;
   for (int k = 0; k < width; ++k) {
@@ -21,8 +22,8 @@ void RawMesh::add_cell(const Cursor& at, std::int64_t label, std::int64_t tag,
 }
 
 void RawMesh::add_face(const Cursor& at, std::int64_t tag, std::span<const Index> corners_first) {
-  RawSurface& surface = surfaces[tag];
   const int width = static_cast<int>(corners_first.size());
+  RawSurface& surface = width == 4 ? quadrangles[tag] : surfaces[tag];
   if (surface.width != 0 && surface.width != width) {
     at.fail(join("surface ", tag, " mixes faces of ", surface.width, " and ", width, " nodes"),
             "export all faces in the order of the tetrahedra");

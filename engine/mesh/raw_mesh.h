@@ -24,7 +24,7 @@ inline constexpr Tet10Order tetgen_tet10{0, 1, 2, 3, 6, 7, 9, 5, 8, 4};
 inline constexpr std::int64_t no_tag = INT64_MIN;
 
 struct RawSurface {
-  int width = 0;  // nodes a face: 3 or 6
+  int width = 0;  // nodes a face: 3 or 6, 4 for quadrangles
   std::vector<Index> faces;
 };
 
@@ -32,23 +32,24 @@ struct RawMesh {
   std::string file;
   std::vector<Vec3> nodes;
   std::vector<std::int64_t> node_label;
-  int cell_width = 0;  // 4 or 10, 0 while there is no cell
+  int cell_width = 0;  // 4, 8 or 10, 0 while there is no cell
   std::vector<Index> cells;
   std::vector<std::int64_t> cell_label;
   std::vector<std::int64_t> cell_tag;  // region number in the file, or no_tag
 
   std::map<std::int64_t, std::string> region_name, surface_name;  // names that the file gives to numbers
-  std::map<std::int64_t, RawSurface> surfaces;
+  std::map<std::int64_t, RawSurface> surfaces;                    // of triangles
+  std::map<std::int64_t, RawSurface> quadrangles;
   std::map<std::pair<int, std::int64_t>, MeshNodeSet> node_sets;  // by dimension and number
   std::vector<MeshField> fields;
 
-  std::map<std::string, std::int64_t> foreign_cells;  // volume cells that are no tetrahedra, by type
-  std::int64_t foreign_faces = 0;                     // faces that no tetrahedron can have (quadrangles, ...)
+  std::map<std::string, std::int64_t> foreign_cells;  // volume cells of no kind that is read, by type
+  std::int64_t foreign_faces = 0;                     // faces that no cell can have (polygons, ...)
   std::int64_t flat_cells = 0;  // faces, edges and points seen, for the message when there is no volume cell
   std::int64_t shared_cells = 0;  // cells in more than one region
   std::vector<std::int64_t> shared_examples;
 
-  // A tetrahedron with 4 or 10 nodes in the file's order. Refuses a mixture of both.
+  // A tetrahedron with 4 or 10 nodes in the file's order, or a hexahedron with 8. Refuses mixtures.
   void add_cell(const Cursor& at, std::int64_t label, std::int64_t tag, std::span<const Index> file_nodes,
                 const Tet10Order& order);
   void add_face(const Cursor& at, std::int64_t tag, std::span<const Index> corners_first);

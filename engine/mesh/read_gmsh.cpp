@@ -56,7 +56,7 @@ Index GmshFile::node(std::int64_t label) const {
 
 void GmshFile::add_element(const GmshType& type, std::int64_t label, std::span<const std::int64_t> groups,
                            std::span<const Index> nodes) {
-  if (type.dim == 3 && (type.nodes == 10 || (type.nodes == 4))) {
+  if (type.dim == 3 && (type.nodes == 10 || type.nodes == 4 || type.nodes == 8)) {
     raw.add_cell(at, label, groups.empty() ? no_tag : groups[0], nodes, gmsh_tet10);
     if (groups.size() > 1) {
       ++raw.shared_cells;
@@ -66,7 +66,7 @@ void GmshFile::add_element(const GmshType& type, std::int64_t label, std::span<c
     ++raw.foreign_cells[type.name];
   } else if (type.dim == 2) {
     ++raw.flat_cells;
-    const bool fits = type.nodes == 3 || type.nodes == 6;
+    const bool fits = type.nodes == 3 || type.nodes == 6 || type.nodes == 4;
     if (!fits) ++raw.foreign_faces;
     for (std::size_t g = 0; fits && g < groups.size(); ++g) raw.add_face(at, groups[g], nodes);
   } else {

@@ -1,4 +1,4 @@
-// Medit files (.mesh), ASCII. References of tetrahedra number the regions, those of triangles the surfaces.
+// Medit files (.mesh), ASCII. References of cells number the regions, those of faces the surfaces.
 #include <array>
 
 #include "engine/mesh/readers.h"
@@ -43,7 +43,7 @@ void read_vertices(MeditFile& f) {
   }
 }
 
-void read_simplices(MeditFile& f, std::size_t width, bool cells) {
+void read_elements(MeditFile& f, std::size_t width, bool cells) {
   const std::int64_t promised = next_integer(f, "the number of elements");
   const std::size_t count = f.at.checked_count(promised, 2 * width + 2, "the number of elements");
   const auto nodes = static_cast<std::int64_t>(f.raw.nodes.size());
@@ -85,10 +85,12 @@ void read_part(MeditFile& f, const std::string& keyword) {
   f.at.set_section(keyword);
   if (keyword == "Dimension") return read_dimension(f);
   if (keyword == "Vertices") return read_vertices(f);
-  if (keyword == "Tetrahedra") return read_simplices(f, 4, true);
-  if (keyword == "TetrahedraP2") return read_simplices(f, 10, true);
-  if (keyword == "Triangles") return read_simplices(f, 3, false);
-  if (keyword == "TrianglesP2") return read_simplices(f, 6, false);
+  if (keyword == "Tetrahedra") return read_elements(f, 4, true);
+  if (keyword == "TetrahedraP2") return read_elements(f, 10, true);
+  if (keyword == "Hexahedra") return read_elements(f, 8, true);
+  if (keyword == "Triangles") return read_elements(f, 3, false);
+  if (keyword == "TrianglesP2") return read_elements(f, 6, false);
+  if (keyword == "Quadrilaterals") return read_elements(f, 4, false);
   const std::int64_t count = skip(f);
   if (count <= 0) return;
   if (keyword.starts_with("Hexahedra") || keyword.starts_with("Prisms") || keyword.starts_with("Pyramids")) {

@@ -9,7 +9,7 @@ namespace isochor::mesh_files {
 
 namespace {
 
-enum class Role { tetrahedron, triangle, foreign_face, flat, foreign_cell };
+enum class Role { tetrahedron, hexahedron, triangle, quadrangle, foreign_face, flat, foreign_cell };
 
 struct VtkType {
   int number;
@@ -25,11 +25,11 @@ constexpr std::array vtk_types{
     VtkType{5, Role::triangle, "triangles"},
     VtkType{6, Role::foreign_face, "triangle strips"},
     VtkType{7, Role::foreign_face, "polygons"},
-    VtkType{8, Role::foreign_face, "pixels"},
-    VtkType{9, Role::foreign_face, "quadrangles"},
+    VtkType{8, Role::quadrangle, "pixels"},
+    VtkType{9, Role::quadrangle, "quadrangles"},
     VtkType{10, Role::tetrahedron, "tetrahedra"},
-    VtkType{11, Role::foreign_cell, "voxels"},
-    VtkType{12, Role::foreign_cell, "hexahedra"},
+    VtkType{11, Role::hexahedron, "voxels"},
+    VtkType{12, Role::hexahedron, "hexahedra"},
     VtkType{13, Role::foreign_cell, "wedges"},
     VtkType{14, Role::foreign_cell, "pyramids"},
     VtkType{21, Role::flat, "lines"},
@@ -83,10 +83,36 @@ const VtkArray* region_array(const std::vector<VtkArray>& arrays, std::size_t ce
   return nullptr;
 }
 
+// Hexahedra and quadrangles. Voxels and pixels count their corners by rows, not around.
+void add_block(const Cursor& at, std::int64_t label, const VtkType& type, std::int64_t tag,
+               std::span<const Index> nodes, RawMesh& raw) {
+  const bool cell = type.role == Role::hexahedron;
+  const std::size_t expected = cell ? 8 : 4;
+  if (nodes.size() != expected) {
+    at.fail(join("cell ", label, " of type ", type.number, " has ", nodes.size(), " points instead of ",
+                 expected),
+            rewrite_file);
+  }
+  std::array<Index, 8> corners{};
+  std::copy(nodes.begin(), nodes.end(), corners.begin());
+  if (type.number == 11 || type.number == 8) {
+    std::swap(corners[2], corners[3]);
+    std::swap(corners[6], corners[7]);
+  }
+  if (cell) {
+    raw.add_cell(at, label, tag, corners, vtk_tet10);
+  } else {
+    ++raw.flat_cells;
+    if (tag != no_tag) raw.add_face(at, tag, std::span<const Index>(corners).first(4));
+  }
+}
+
 void add_cell(const Cursor& at, std::int64_t label, std::int64_t type_number, std::int64_t tag,
               std::span<const Index> nodes, RawMesh& raw) {
   const VtkType type = type_of(type_number);
   const std::size_t width = nodes.size();
+  if (type.role == Role::hexahedron || type.role == Role::quadrangle)
+    return add_block(at, label, type, tag, nodes, raw);
   const bool linear = type_number == 10 || type_number == 5,
              quadratic = type_number == 24 || type_number == 22;
   const std::size_t low = type.role == Role::tetrahedron ? 4 : 3,

@@ -27,7 +27,7 @@ struct VtkCells {
 };
 
 // Adds all cells; points are counted from `first_node`. The integer array named "region", "gmsh:physical",
-// "CellEntityIds", "MaterialIds" or alike numbers the regions and, on triangles, the surfaces.
+// "CellEntityIds", "MaterialIds" or alike numbers the regions and, on faces, the surfaces.
 void add_vtk_cells(const Cursor& at, const VtkCells& cells, const std::vector<VtkArray>& cell_arrays,
                    Index first_node, RawMesh& raw);
 

@@ -122,7 +122,10 @@ VtuText grid_text(const VtkGrid& grid) {
   const std::size_t cells = grid.cells.size() / width;
   std::vector<std::int64_t> offsets(cells);
   for (std::size_t c = 0; c < cells; ++c) offsets[c] = static_cast<std::int64_t>((c + 1) * width);
-  const std::vector<std::uint8_t> types(cells, grid.cell_type == CellType::tet4 ? 10 : 24);
+  // VTK's numbers of the linear and the quadratic tetrahedron and of the hexahedron.
+  const std::uint8_t number =
+      grid.cell_type == CellType::tet4 ? 10 : (grid.cell_type == CellType::hex8 ? 12 : 24);
+  const std::vector<std::uint8_t> types(cells, number);
   std::vector<double> coordinates;
   coordinates.reserve(3 * grid.points.size());
   for (const Vec3& x : grid.points) coordinates.insert(coordinates.end(), {x.x, x.y, x.z});

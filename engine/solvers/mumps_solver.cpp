@@ -153,7 +153,8 @@ FactorReport MumpsSolver::analyze_pattern() {
       }
     }
     if (best.position.empty()) best = order_unknowns(p, OrderingMethod::amd);
-    if (best.method != last) analyze_with(best);
+    // A graph too small for any of the methods has not been analyzed at all so far.
+    if (best.method != last || last == OrderingMethod::as_given) analyze_with(best);
   }
   if (infog(1) < 0) return failure("the analysis");
   FactorReport report;
@@ -212,6 +213,8 @@ std::unique_ptr<LinearSolver> make_mumps_solver(const MumpsOptions& options) {
 bool mumps_graph_ordering(std::span<const Index> start, std::span<const Index> neighbor,
                           OrderingMethod method, std::vector<Index>& position) {
   const Index n = static_cast<Index>(start.size()) - 1;
+  // Where all are neighbors there is nothing to order, and PORD would end the process over it.
+  if (neighbor.size() == at(n) * at(n - 1)) return false;
   std::vector<MUMPS_INT> row, column;
   for (Index i = 0; i < n; ++i) {
     row.push_back(i + 1);

@@ -7,8 +7,8 @@
 
 namespace isochor {
 
-// A box of nx * ny * nz cells cut into six tets each (Kuhn), all diagonals parallel. Surfaces "x0", "x1",
-// "y0", "y1", "z0", "z1" are its sides; its one region is "body".
+// A box of nx * ny * nz hexahedra, or of as many cells cut into six tets each (Kuhn), all diagonals parallel.
+// Surfaces "x0", "x1", "y0", "y1", "z0", "z1" are its sides; its one region is "body".
 struct BoxMeshDef {
   Vec3 lower{0, 0, 0}, upper{1, 1, 1};  // [m]
   std::array<int, 3> divisions{1, 1, 1};
@@ -16,7 +16,7 @@ struct BoxMeshDef {
 };
 Result<Mesh> box_mesh(const BoxMeshDef& def);
 
-// A Tet10 mesh on the same corners, with straight edges. A Tet10 mesh is returned as it is.
+// A Tet10 mesh on the same corners, with straight edges. Meshes that are not Tet4 are returned as they are.
 Mesh to_tet10(const Mesh& mesh);
 
 }  // namespace isochor

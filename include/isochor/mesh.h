@@ -10,15 +10,17 @@
 
 namespace isochor {
 
-// Node orders are those of VTK: Tet10 has its mid-edge nodes on (01)(12)(20)(03)(13)(23).
-enum class CellType : std::uint8_t { tet4, tet10 };
+// Node orders are those of VTK: Tet10 has its mid-edge nodes on (01)(12)(20)(03)(13)(23); Hex8 has its
+// corners counterclockwise around the bottom, then those above them.
+enum class CellType : std::uint8_t { tet4, tet10, hex8 };
 
 constexpr int nodes_per_cell(CellType type) {
-  return type == CellType::tet4 ? 4 : 10;
+  return type == CellType::tet4 ? 4 : (type == CellType::hex8 ? 8 : 10);
 }
-// Faces of a Tet10 carry their mid-edge nodes after the corners: (01)(12)(20).
+// Faces of a Tet10 carry their mid-edge nodes after the corners: (01)(12)(20). Those of a Hex8 have their
+// four corners in turn.
 constexpr int nodes_per_face(CellType type) {
-  return type == CellType::tet4 ? 3 : 6;
+  return type == CellType::tet4 ? 3 : (type == CellType::hex8 ? 4 : 6);
 }
 
 // A named set of faces. The node order of a face need not say which side is outside.

@@ -46,6 +46,7 @@ enum class Element : std::uint8_t {
   tet4,                // one energy a tet: cheapest, stiff in bending
   tet4_edge_smoothed,  // energy on patches around edges: the default for accuracy per second
   tet10,               // quadratic displacements; the mesh is raised to Tet10 where it is Tet4
+  hex8,                // trilinear hexahedra with eight points; needs a Hex8 mesh
 };
 
 struct RegionMaterial {

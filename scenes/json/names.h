@@ -18,9 +18,9 @@ struct Words;  // specialized below: `static constexpr std::array<std::pair<E, s
     static constexpr std::array<std::pair<E, std::string_view>, N> list{{__VA_ARGS__}}; \
   }
 
-ISOCHOR_WORDS(Element, 3, {Element::tet4, "tet4"}, {Element::tet4_edge_smoothed, "tet4_edge_smoothed"},
-              {Element::tet10, "tet10"});
-ISOCHOR_WORDS(CellType, 2, {CellType::tet4, "tet4"}, {CellType::tet10, "tet10"});
+ISOCHOR_WORDS(Element, 4, {Element::tet4, "tet4"}, {Element::tet4_edge_smoothed, "tet4_edge_smoothed"},
+              {Element::tet10, "tet10"}, {Element::hex8, "hex8"});
+ISOCHOR_WORDS(CellType, 3, {CellType::tet4, "tet4"}, {CellType::tet10, "tet10"}, {CellType::hex8, "hex8"});
 ISOCHOR_WORDS(MaterialLaw, 15, {MaterialLaw::neo_hookean, "neo_hookean"},
               {MaterialLaw::neo_hookean_ogden, "neo_hookean_ogden"},
               {MaterialLaw::stable_neo_hookean, "stable_neo_hookean"},

@@ -29,15 +29,21 @@ isochor::EffectPtr volume_rows(VolumeSpace space, VolumeStrainKind strain, doubl
   return isochor::volume(def);
 }
 
+CellType cells_of(Element element) {
+  return element == Element::tet10  ? CellType::tet10
+         : element == Element::hex8 ? CellType::hex8
+                                    : CellType::tet4;
+}
+
 Mesh solid_mesh(Element element) {
-  const CellType type = element == Element::tet10 ? CellType::tet10 : CellType::tet4;
-  return mapped(box({2, 1, 2}, {1, 0.5, 1}, type), wavy);
+  return mapped(box({2, 1, 2}, {1, 0.5, 1}, cells_of(element)), wavy);
 }
 
 const std::vector<std::pair<Element, std::string>> kElements = {
     {Element::tet4, "tet4"},
     {Element::tet4_edge_smoothed, "edge-smoothed"},
-    {Element::tet10, "tet10 curved"}};
+    {Element::tet10, "tet10 curved"},
+    {Element::hex8, "hex8"}};
 
 void add_volumes(std::vector<SceneCase>& out) {
   const std::vector<std::string> covers = {"constraints/volume", "constraints/volume_rows"};
@@ -86,12 +92,11 @@ void add_cavities(std::vector<SceneCase>& out) {
         def.control = control;
         def.amount = Curve::constant(1.2);
         def.cap_free_openings = open;
-        const CellType type = element == Element::tet10 ? CellType::tet10 : CellType::tet4;
         const auto smaller = [](const Vec3& p) { return wavy((1.0 / 3) * p); };
         SceneCase c{name + (open ? ", open" : ", closed") + ", chamber control " +
                         std::to_string(static_cast<int>(control)),
                     {"constraints/cavity", "constraints/surface_pool"},
-                    mapped(hollow_box(open, type), smaller),
+                    mapped(hollow_box(open, cells_of(element)), smaller),
                     element,
                     {{"", material(0.3), 1000}},
                     {isochor::cavity(def)}};

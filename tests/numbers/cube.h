@@ -8,8 +8,8 @@
 
 namespace test {
 
-inline Mesh uneven_cube() {
-  return mapped(box({2, 2, 2}), [](const Vec3& p) {
+inline Mesh uneven_cube(CellType cells = CellType::tet4) {
+  return mapped(box({2, 2, 2}, {1, 1, 1}, cells), [](const Vec3& p) {
     const double inner = 64 * p.x * (1 - p.x) * p.y * (1 - p.y) * p.z * (1 - p.z);
     return p + inner * Vec3{0.07, -0.05, 0.04};
   });

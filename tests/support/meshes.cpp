@@ -7,6 +7,8 @@
 #include <numeric>
 #include <random>
 
+#include "engine/mesh/cell_shape.h"
+
 namespace test {
 
 namespace {
@@ -17,18 +19,21 @@ std::size_t at(Index i) {
 
 constexpr int kEdge[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
 
-std::array<Index, 3> face_key(Index a, Index b, Index c) {
-  std::array<Index, 3> key{a, b, c};
+std::vector<Index> face_key(const Mesh& m, const Index* nodes) {
+  std::vector<Index> key(nodes, nodes + isochor::cell_shape(m.cell_type).side_corners);
   std::sort(key.begin(), key.end());
   return key;
 }
 
-// Local nodes of a cell's face: corners, then for Tet10 the middle nodes of its edges.
-std::vector<Index> face_nodes(const Mesh& m, Index cell, int a, int b, int c) {
+// Nodes of a cell's side: corners, then for Tet10 the middle nodes of its edges.
+std::vector<Index> face_nodes(const Mesh& m, Index cell, std::size_t side) {
   const Index* n = m.cells.data() + at(cell) * at(nodes_per_cell(m.cell_type));
-  std::vector<Index> face{n[a], n[b], n[c]};
-  if (m.cell_type == CellType::tet4) return face;
-  const int corner[3] = {a, b, c};
+  const isochor::CellShape& shape = isochor::cell_shape(m.cell_type);
+  std::vector<Index> face;
+  for (std::size_t k = 0; k < shape.side_corners; ++k) face.push_back(n[shape.side[side][k]]);
+  if (m.cell_type != CellType::tet10) return face;
+  int corner[3];
+  for (std::size_t k = 0; k < 3; ++k) corner[k] = static_cast<int>(shape.side[side][k]);
   for (int k = 0; k < 3; ++k) {
     const int p = corner[k], q = corner[(k + 1) % 3];
     for (int e = 0; e < 6; ++e) {
@@ -39,8 +44,6 @@ std::vector<Index> face_nodes(const Mesh& m, Index cell, int a, int b, int c) {
   }
   return face;
 }
-
-constexpr int kFace[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
 
 // Removes nodes that no cell uses.
 void compact(Mesh& m) {
@@ -82,25 +85,28 @@ Mesh without_cells(const Mesh& mesh, const Vec3& lower, const Vec3& upper, const
   const auto per = at(nodes_per_cell(mesh.cell_type)), per_face = at(nodes_per_face(mesh.cell_type));
   Mesh out = mesh;
   out.cells.clear();
-  std::map<std::array<Index, 3>, int> removed_faces, kept_faces;
+  const std::size_t sides = isochor::cell_shape(mesh.cell_type).sides;
+  const std::size_t corners = isochor::cell_shape(mesh.cell_type).corners;
+  std::map<std::vector<Index>, int> removed_faces, kept_faces;
   isochor::MeshSurface surface{name, {}};
   std::vector<Index> kept;
   for (Index c = 0; c < mesh.cell_count(); ++c) {
     const Index* n = mesh.cells.data() + at(c) * per;
     Vec3 center{};
-    for (int k = 0; k < 4; ++k) center += 0.25 * mesh.nodes[at(n[k])];
+    for (std::size_t k = 0; k < corners; ++k)
+      center += (1.0 / static_cast<double>(corners)) * mesh.nodes[at(n[k])];
     const bool inside = center.x > lower.x && center.y > lower.y && center.z > lower.z &&
                         center.x < upper.x && center.y < upper.y && center.z < upper.z;
-    for (const auto& f : kFace) ++(inside ? removed_faces : kept_faces)[face_key(n[f[0]], n[f[1]], n[f[2]])];
+    for (std::size_t f = 0; f < sides; ++f)
+      ++(inside ? removed_faces : kept_faces)[face_key(mesh, face_nodes(mesh, c, f).data())];
     if (inside) continue;
     kept.push_back(c);
     out.cells.insert(out.cells.end(), n, n + per);
   }
   for (const Index c : kept) {
-    const Index* n = mesh.cells.data() + at(c) * per;
-    for (const auto& f : kFace) {
-      if (removed_faces.count(face_key(n[f[0]], n[f[1]], n[f[2]])) == 0) continue;
-      const auto nodes = face_nodes(mesh, c, f[0], f[1], f[2]);
+    for (std::size_t f = 0; f < sides; ++f) {
+      const auto nodes = face_nodes(mesh, c, f);
+      if (removed_faces.count(face_key(mesh, nodes.data())) == 0) continue;
       surface.faces.insert(surface.faces.end(), nodes.begin(), nodes.end());
     }
   }
@@ -108,7 +114,7 @@ Mesh without_cells(const Mesh& mesh, const Vec3& lower, const Vec3& upper, const
     std::vector<Index> faces;
     for (std::size_t f = 0; f < s.faces.size(); f += per_face) {
       const Index* n = s.faces.data() + f;
-      if (kept_faces.count(face_key(n[0], n[1], n[2])) > 0) faces.insert(faces.end(), n, n + per_face);
+      if (kept_faces.count(face_key(mesh, n)) > 0) faces.insert(faces.end(), n, n + per_face);
     }
     s.faces = faces;
   }
@@ -138,7 +144,12 @@ Mesh shuffled(const Mesh& mesh, unsigned seed, std::vector<Index>& place) {
     const Index* from = mesh.cells.data() + at(order[c]) * per;
     Index* to = out.cells.data() + c * per;
     const int* turn = kTurn[random() % 4];
-    for (int k = 0; k < 4; ++k) to[k] = place[at(from[turn[k]])];
+    if (per == 8) {
+      // Turned by a quarter about the axis from bottom to top, any number of times.
+      const std::size_t quarter = random() % 4;
+      for (std::size_t k = 0; k < 8; ++k) to[k] = place[at(from[k / 4 * 4 + (k + quarter) % 4])];
+    }
+    for (int k = 0; per != 8 && k < 4; ++k) to[k] = place[at(from[turn[k]])];
     for (int e = 0; per == 10 && e < 6; ++e) {
       for (int f = 0; f < 6; ++f) {
         const int p = turn[kEdge[e][0]], q = turn[kEdge[e][1]];
@@ -164,7 +175,9 @@ Mesh divided(Mesh mesh, double x) {
   const auto per = at(nodes_per_cell(mesh.cell_type));
   for (std::size_t c = 0; c < mesh.cells.size(); c += per) {
     double center = 0;
-    for (std::size_t k = 0; k < 4; ++k) center += 0.25 * mesh.nodes[at(mesh.cells[c + k])].x;
+    const std::size_t corners = per == 8 ? 8 : 4;
+    for (std::size_t k = 0; k < corners; ++k)
+      center += mesh.nodes[at(mesh.cells[c + k])].x / static_cast<double>(corners);
     mesh.cell_region.push_back(center < x ? 0 : 1);
   }
   return mesh;

@@ -114,7 +114,23 @@ inline Mesh scene_mesh(const std::string& name) {
 }
 
 inline const char* name_of(isochor::Element e) {
-  return e == isochor::Element::tet4 ? "tet4" : (e == isochor::Element::tet10 ? "tet10" : "edge-smoothed");
+  switch (e) {
+    case isochor::Element::tet4:
+      return "tet4";
+    case isochor::Element::tet10:
+      return "tet10";
+    case isochor::Element::hex8:
+      return "hex8";
+    default:
+      return "edge-smoothed";
+  }
+}
+// Every element, with the cells that a mesh for it must have.
+inline constexpr isochor::Element kAllElements[] = {isochor::Element::tet4,
+                                                    isochor::Element::tet4_edge_smoothed,
+                                                    isochor::Element::tet10, isochor::Element::hex8};
+inline isochor::CellType cells_for(isochor::Element e) {
+  return e == isochor::Element::hex8 ? isochor::CellType::hex8 : isochor::CellType::tet4;
 }
 inline constexpr isochor::Element kElements[] = {isochor::Element::tet4, isochor::Element::tet4_edge_smoothed,
                                                  isochor::Element::tet10};
