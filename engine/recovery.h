@@ -16,7 +16,7 @@ struct RecoveryInput {
 };
 
 // Cauchy stress of the energy plus the pressure of the rows. Edge-smoothed cells take the mean of the
-// stresses of their six edge patches. Nodes take the mean of their cells by rest volume.
+// stresses of their six edge patches. Nodes take a linear fit to the points (or patches) around them.
 BodyFields recover_fields(const RecoveryInput& in);
 
 // Volume now and at rest, and the extremes of J over cells (over points for Tet10).

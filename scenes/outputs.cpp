@@ -127,7 +127,9 @@ Result<void> RunOutputs::write_frame(const RunView& view, std::size_t b, const B
   // Points stay at rest; the displacement warps them, so that both states can be seen.
   grid.points = rest;
   grid.cells = mesh.cells;
-  grid.point_fields = {{"displacement", 3, flat(displacement)}, {"pressure", 1, fields.node_pressure}};
+  grid.point_fields = {{"displacement", 3, flat(displacement)},
+                       {"pressure", 1, fields.node_pressure},
+                       {"stress", 6, fields.node_stress}};
   if (view.scene.analysis.type == AnalysisType::dynamics)
     grid.point_fields.push_back({"velocity", 3, flat(v)});
   grid.cell_fields = {{"J", 1, fields.cell_J},

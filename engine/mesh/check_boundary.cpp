@@ -91,10 +91,15 @@ std::vector<CellFace> boundary_faces(const Mesh& mesh, const std::vector<CellFac
     if (last - first == 2 && faces[first].odd == faces[first + 1].odd)
       folded.add(cell_label(mesh, faces[first].cell));
   }
-  crowded.report(report, Severity::error, "non-manifold-face", "face is", "faces are",
-                 "shared by more than two cells; remove the overlapping cells", "at cell ");
-  folded.report(report, Severity::error, "overlapping-cells", "face has", "faces have",
-                "both of its cells on one side; remove the overlapping cells", "at cell ");
+  // Lattices that keep parts of a body apart have cells in the same place on purpose.
+  const bool lattice = mesh.cell_type == CellType::hex8;
+  const Severity severity = lattice ? Severity::warning : Severity::error;
+  const std::string remedy = std::string("remove the overlapping cells") +
+                             (lattice ? ", unless a lattice keeps parts apart by them" : "");
+  crowded.report(report, severity, "non-manifold-face", "face is", "faces are",
+                 "shared by more than two cells; " + remedy, "at cell ");
+  folded.report(report, severity, "overlapping-cells", "face has", "faces have",
+                "both of its cells on one side; " + remedy, "at cell ");
   return boundary;
 }
 

@@ -126,6 +126,7 @@ struct BodyMeasures {
 // Per-node and per-cell results of a body, recovered for output.
 struct BodyFields {
   std::vector<double> node_pressure;  // tr(sigma)/3 [Pa], tension positive
+  std::vector<double> node_stress;    // Cauchy stress xx yy zz xy yz zx [Pa], 6 a node
   std::vector<double> cell_J;
   std::vector<double> cell_pressure;   // tr(sigma)/3 [Pa]
   std::vector<double> cell_von_mises;  // [Pa]
