@@ -28,6 +28,17 @@ T must(Result<T> result) {
   return std::move(result).value();
 }
 
+inline void must(const Result<void>& result) {
+  if (result) return;
+  std::fprintf(stderr, "%s\n", result.error().c_str());
+  std::exit(2);
+}
+
+// A number in [0, 1) made by hand, so that every standard library draws the same.
+inline double draw(std::mt19937& random) {
+  return static_cast<double>(random()) / 4294967296.0;
+}
+
 // How the cube is made. Stable neo-Hookean throughout: it has a value for inverted elements.
 struct Formulation {
   std::string name;
@@ -100,10 +111,11 @@ struct Cube {
 inline std::vector<Vec3> scrambled(std::span<const Vec3> rest, unsigned seed) {
   std::mt19937 random(seed);
   const double half = 0.5 * std::cbrt(2.0);
-  // By hand, so that every standard library draws the same.
-  const auto draw = [&] { return 0.5 + half * (2 * (random() / 4294967296.0) - 1); };
+  const auto place = [&] { return 0.5 + half * (2 * draw(random) - 1); };
   std::vector<Vec3> x(rest.size());
-  for (Vec3& p : x) p = {draw(), draw(), draw()};
+  for (Vec3& p : x) {
+    for (int k = 0; k < 3; ++k) p[k] = place();
+  }
   return x;
 }
 
@@ -120,7 +132,7 @@ inline std::vector<Vec3> crushed(std::span<const Vec3> rest, Crushed how, unsign
   std::mt19937 random(seed);
   Vec3 n{0, 0, 1};
   if (seed > 0) {
-    for (int k = 0; k < 3; ++k) n[k] = random() / 4294967296.0 - 0.5;
+    for (int k = 0; k < 3; ++k) n[k] = draw(random) - 0.5;
     n = (1 / std::sqrt(dot(n, n))) * n;
   }
   const Vec3 center{0.5, 0.5, 0.5};

@@ -295,7 +295,8 @@ TEST_CASE("orders of convergence of displacements and stresses") {
                               << order(a.pressure, b.pressure, ratio) << ", "
                               << order(a.cell_stress, b.cell_stress, ratio) << ", "
                               << order(a.node_stress, b.node_stress, ratio));
-      CHECK(order(a.displacement, b.displacement, ratio) > x.displacement - 0.25);
+      // With rows the coarse mesh is not yet where the order shows in full.
+      CHECK(order(a.displacement, b.displacement, ratio) > x.displacement - (incompressible ? 0.3 : 0.1));
       CHECK(order(a.node_stress, b.node_stress, ratio) > x.node_stress);
       CHECK(order(a.cell_stress, b.cell_stress, ratio) > 0.8);
       // What nodes get is better than what cells have.

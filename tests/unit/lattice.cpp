@@ -47,7 +47,7 @@ LatticeDef surface_of(const std::vector<Block>& blocks, double size) {
 }
 
 // A U: a bar of five blocks with a prong of four on both ends.
-std::vector<Block> fork() {
+std::vector<Block> fork_blocks() {
   std::vector<Block> blocks;
   for (int i = 0; i < 5; ++i) blocks.push_back({i, 0, 0});
   for (int j = 1; j < 5; ++j) {
@@ -146,7 +146,7 @@ TEST_CASE("lattice: the surface moves with the lattice", "[mesh]") {
 
 TEST_CASE("lattice: what does not hang together is kept apart", "[mesh]") {
   // The gap of the fork is half as wide as a cube: both prongs pass through the same cubes.
-  LatticeDef def = surface_of(fork(), 0.1);
+  LatticeDef def = surface_of(fork_blocks(), 0.1);
   def.spacing = 0.6;
   def.samples = 12;
   for (const bool apart : {true, false}) {
@@ -169,7 +169,7 @@ TEST_CASE("lattice: what does not hang together is kept apart", "[mesh]") {
   CHECK(check_mesh(apart.mesh).usable());
   CHECK(joined.mesh.cell_count() <= apart.mesh.cell_count());
   // The tips of the prongs share no node, whatever is done to one leaves the other alone.
-  LatticeDef narrow = surface_of(fork(), 0.1);
+  LatticeDef narrow = surface_of(fork_blocks(), 0.1);
   narrow.spacing = 0.5;
   narrow.samples = 20;
   for (Vec3& p : narrow.points) p.y *= 2;  // prongs twice as long: 1 m, two cubes
