@@ -20,8 +20,12 @@ const std::vector<Formulation> kFormulations = {
     {"hex8, element rows", Element::hex8, 0.49, true, VolumeSpace::element},
     {"hex8, nodal rows", Element::hex8, 0.49, true, VolumeSpace::node},
     {"tet4, nodal rows", Element::tet4, 0.49, true, VolumeSpace::node},
+    {"edge-smoothed, nodal rows", Element::tet4_edge_smoothed, 0.49, true, VolumeSpace::node},
+    {"tet10, nodal rows", Element::tet10, 0.49, true, VolumeSpace::node},
     {"hex8, element rows, nu = 0.5", Element::hex8, 0.5, true, VolumeSpace::element},
+    {"hex8, nodal rows, nu = 0.5", Element::hex8, 0.5, true, VolumeSpace::node},
     {"tet4, nodal rows, nu = 0.5", Element::tet4, 0.5, true, VolumeSpace::node},
+    {"edge-smoothed, nodal rows, nu = 0.5", Element::tet4_edge_smoothed, 0.5, true, VolumeSpace::node},
 };
 
 int number_after(int argc, char** argv, const char* flag, int otherwise) {
@@ -33,7 +37,7 @@ int number_after(int argc, char** argv, const char* flag, int otherwise) {
 
 void print_twist(int divisions) {
   std::printf("Twist by pi/2, twice: unit cube of %d^3 cells, force tolerance 1e-6\n", divisions);
-  std::printf("%-30s %22s %8s %8s\n", "formulation", "iterations per solve", "volume", "min J");
+  std::printf("%-36s %22s %8s %8s\n", "formulation", "iterations per solve", "volume", "min J");
   for (const Formulation& f : kFormulations) {
     const Twist t = twist(f, divisions, 200);
     std::string counts;
@@ -42,7 +46,7 @@ void print_twist(int divisions) {
           (counts.empty() ? "" : ", ") + std::to_string(r.iterations) + " + " + std::to_string(r.corrections);
       if (r.status != StepStatus::converged) counts += " (stopped)";
     }
-    std::printf("%-30s %22s %+7.2f%% %8.3f\n", f.name.c_str(), counts.c_str(),
+    std::printf("%-36s %22s %+7.2f%% %8.3f\n", f.name.c_str(), counts.c_str(),
                 100 * (t.measures.volume / t.measures.rest_volume - 1), t.measures.min_J);
     std::fflush(stdout);
   }
@@ -51,7 +55,7 @@ void print_twist(int divisions) {
 template <class Start>
 void print_recoveries(const char* title, int divisions, int seeds, const Start& start) {
   std::printf("\n%s: unit cube of %d^3 cells, %d starts\n", title, divisions, seeds);
-  std::printf("%-30s %9s %9s %12s %9s\n", "formulation", "recovered", "elsewhere", "not converged",
+  std::printf("%-36s %9s %9s %12s %9s\n", "formulation", "recovered", "elsewhere", "not converged",
               "iterations");
   for (const Formulation& f : kFormulations) {
     int recovered = 0, elsewhere = 0;
@@ -65,7 +69,7 @@ void print_recoveries(const char* title, int divisions, int seeds, const Start& 
       iterations.push_back(o.report.iterations + o.report.corrections);
     }
     std::sort(iterations.begin(), iterations.end());
-    std::printf("%-30s %9d %9d %12d %4d..%d\n", f.name.c_str(), recovered, elsewhere,
+    std::printf("%-36s %9d %9d %12d %4d..%d\n", f.name.c_str(), recovered, elsewhere,
                 seeds - recovered - elsewhere, iterations.front(), iterations.back());
     std::fflush(stdout);
   }
