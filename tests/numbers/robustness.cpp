@@ -75,7 +75,7 @@ TEST_CASE("positions that cannot be set are refused") {
     const auto r = cube.world.set_positions(body, x);
     return r ? std::string() : r.error();
   };
-  CHECK(refusal(cube.body).find("8 nodes and 7 positions") != std::string::npos);
+  CHECK(refusal(cube.body).find("7 positions for the 8 nodes") != std::string::npos);
   CHECK(refusal(static_cast<BodyId>(3)).find("no body number 3") != std::string::npos);
   x.resize(8);
   x[5].y = std::nan("");
