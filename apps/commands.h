@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "scenes/explain.h"
+#include "scenes/run.h"
+
 namespace isochor::app {
 
 enum Exit : int {
@@ -22,13 +25,17 @@ struct RunArguments {
   std::string folder;  // empty: out/NAME
   int threads = 0;
   std::optional<double> budget;
-  bool quiet = false, json = false;
+  bool quiet = false, json = false, explain = false;
 };
+
+// Tables of `run --explain`, after the run.
+void print_explanation(const Explanation& explanation, const RunResult& result);
 
 struct StudyArguments {
   std::string study;
   std::string folder;  // empty: out/study/NAME, with _quick
   bool quick = false, fresh = false, list = false, quiet = false;
+  bool check = false, update = false;
   int threads = 0;
 };
 

@@ -30,6 +30,7 @@ void add_run(CLI::App& top, app::RunArguments& a) {
       ->check(CLI::PositiveNumber);
   c->add_flag("--quiet", a.quiet, "Print errors only");
   c->add_flag("--json", a.json, "Print the summary as JSON instead of tables");
+  c->add_flag("--explain", a.explain, "Say which effects are on, why, and their share of time and memory");
   c->footer(kRunFooter);
 }
 
@@ -41,6 +42,9 @@ void add_study(CLI::App& top, app::StudyArguments& a) {
   c->add_option("--out", a.folder, "Folder of the outputs; default out/study/NAME")->type_name("DIR");
   c->add_flag("--fresh", a.fresh, "Measure all again; otherwise what this build has measured is kept");
   c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
+  c->add_flag("--check", a.check, "Hold guarded cells of all studies against the committed expectations");
+  c->add_flag("--update", a.update, "With --check: write what was found as the new expectations")
+      ->needs("--check");
   c->add_flag("--quiet", a.quiet, "Print errors only");
   c->footer("A study that is stopped (Ctrl-C) leaves what it has; the same command goes on from there.");
 }

@@ -155,6 +155,13 @@ int run(const RunArguments& a) {
   }
   if (a.json) std::fputs(summary_json(result).c_str(), stdout);
   if (tables) print_summary(result, options.folder);
+  if (a.explain) {
+    const auto explanation = explain(scene.value());
+    if (explanation)
+      print_explanation(explanation.value(), result);
+    else
+      std::fprintf(stderr, "isochor: --explain: %s\n", explanation.error().c_str());
+  }
   if (!result.reason.empty())
     std::fprintf(stderr, "isochor: %s: %s\n", to_string(result.status), result.reason.c_str());
   return exit_code(result.status);

@@ -7,6 +7,8 @@
 
 #include "apps/commands.h"
 #include "apps/table.h"
+#include "scenes/outputs.h"
+#include "studies/check.h"
 #include "studies/run_study.h"
 
 namespace isochor::app {
@@ -47,10 +49,40 @@ Result<const studies::Study*> find(const std::string& name) {
   return Error{"there is no study named \"" + name + "\"; there are " + known};
 }
 
+int check_all(bool update, bool quiet) {
+  const auto read = studies::read_expectations(studies::expectations_file());
+  if (!read && !update) {
+    std::fprintf(stderr, "isochor: %s\n", read.error().c_str());
+    return bad_input;
+  }
+  studies::CheckOptions options;
+  options.stop = [] { return g_signals.load() > 0; };
+  options.on_cell = [&](const std::string& id, const std::vector<std::string>& findings) {
+    if (findings.empty() && quiet) return;
+    std::printf("%-5s %s\n", findings.empty() ? "ok" : "WRONG", id.c_str());
+    for (const auto& f : findings) std::printf("      %s\n", f.c_str());
+    std::fflush(stdout);
+  };
+  const auto result = studies::check_studies(read ? read.value() : studies::Expectations{}, options);
+  if (result.interrupted) return interrupted;
+  std::printf("%zu cells, %zu not as expected\n", result.cells, result.wrong);
+  if (!update) return result.wrong == 0 ? success : not_converged;
+  const auto written = write_text(studies::expectations_file(), studies::expectations_json(result.found));
+  if (!written) {
+    std::fprintf(stderr, "isochor: %s\n", written.error().c_str());
+    return bad_input;
+  }
+  std::printf("written to %s\n", studies::expectations_file().c_str());
+  return success;
+}
+
 }  // namespace
 
 int study(const StudyArguments& a) {
   if (a.list) return list_studies();
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  if (a.check) return check_all(a.update, a.quiet);
   if (a.study.empty()) {
     std::fprintf(stderr, "isochor: study: name one, or ask for --list\n");
     return bad_input;
@@ -60,8 +92,6 @@ int study(const StudyArguments& a) {
     std::fprintf(stderr, "isochor: %s\n", found.error().c_str());
     return bad_input;
   }
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
   studies::StudyOptions options;
   options.folder = a.folder.empty() ? "out/study/" + a.study + (a.quick ? "_quick" : "") : a.folder;
   options.quick = a.quick;

@@ -37,7 +37,7 @@ std::string place(const char* list, std::size_t i) {
   return std::string(list) + "[" + std::to_string(i) + "]";
 }
 
-Result<void> add_bodies(const SceneDef& scene, BuiltScene& built) {
+Result<void> add_bodies(const SceneDef& scene, const BuildOptions& options, BuiltScene& built) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const SceneBody& body = scene.bodies[b];
     BodyDef def;
@@ -54,6 +54,7 @@ Result<void> add_bodies(const SceneDef& scene, BuiltScene& built) {
       def.materials.push_back(
           {body.materials[m].region, std::move(material).value(), body.materials[m].density});
     }
+    if (options.parts) options.parts->bodies.push_back(def);
     auto id = built.world.add_body(std::move(def));
     if (!id) return Error{id.error()};
     built.bodies.push_back(id.value());
@@ -72,9 +73,10 @@ std::vector<VolumeRows> volume_rows(const SceneDef& scene) {
 }
 
 // Supports come before cavities, whose caps they hold.
-Result<void> add_effects(const SceneDef& scene, BuiltScene& built) {
+Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, BuiltScene& built) {
   std::string error;
   const auto add = [&](EffectPtr effect) {
+    if (options.parts) options.parts->effects.push_back(effect);
     auto id = built.world.add(std::move(effect));
     if (!id && error.empty()) error = id.error();
     return id ? id.value() : EffectId{};
@@ -109,8 +111,8 @@ Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
   auto world = World::create(std::move(world_options));
   if (!world) return Error{world.error()};
   BuiltScene built{std::move(world).value(), {}, {}, {}, {}, {}};
-  if (auto r = add_bodies(scene, built); !r) return Error{r.error()};
-  if (auto r = add_effects(scene, built); !r) return Error{r.error()};
+  if (auto r = add_bodies(scene, options, built); !r) return Error{r.error()};
+  if (auto r = add_effects(scene, options, built); !r) return Error{r.error()};
   if (auto r = built.world.compile(); !r) return Error{r.error()};
   return built;
 }

@@ -169,8 +169,15 @@ struct BuiltScene {
   std::vector<EffectId> dirichlet, cavities, tractions, forces;
 };
 
+// What build() hands to the world.
+struct SceneParts {
+  std::vector<BodyDef> bodies;
+  std::vector<EffectPtr> effects;
+};
+
 struct BuildOptions {
-  int threads = 0;  // 0: all the machine has
+  int threads = 0;              // 0: all the machine has
+  SceneParts* parts = nullptr;  // where given: copies of bodies and effects are put here
 };
 
 // The material of a definition; messages name the law and the constant.

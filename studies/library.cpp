@@ -6,7 +6,8 @@
 namespace isochor::studies {
 
 std::span<const Study> studies() {
-  static const std::array all{accuracy_study(), locking_study()};
+  static const std::array all{accuracy_study(), locking_study(), solvers_study(),  timesteps_study(),
+                              effects_study(),  scaling_study(), stability_study()};
   return all;
 }
 

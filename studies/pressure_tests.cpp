@@ -8,9 +8,9 @@
 #include <map>
 
 #include "engine/assembly.h"
-#include "engine/builder.h"
 #include "engine/parallel.h"
 #include "engine/system.h"
+#include "scenes/explain.h"
 
 namespace isochor::studies {
 
@@ -24,7 +24,6 @@ struct Blocks {
 };
 
 Result<Blocks> blocks(const Formulation& f, int n, double bulk, double stabilization) {
-  Builder builder;
   BodyDef body;
   BoxMeshDef box;
   box.divisions = {n, n, n};
@@ -38,29 +37,14 @@ Result<Blocks> blocks(const Formulation& f, int n, double bulk, double stabiliza
   auto material = neo_hookean(constants);
   if (!material) return Error{material.error()};
   body.materials = {{"", std::move(material).value(), 1}};
-  if (auto r = builder.add_body(std::move(body)); !r) return Error{r.error()};
   VolumeDef rows;
   rows.space = f.space;
   rows.stabilization = stabilization;
   DirichletDef wall;
   wall.where.surfaces = {"x0"};
-  std::vector<std::unique_ptr<EffectInstance>> instances;
-  const std::vector<EffectPtr> effects{volume(rows), dirichlet(wall)};
-  for (const auto& e : effects) {
-    if (auto r = e->check(); !r) return Error{r.error()};
-    if (auto r = e->declare(builder); !r) return Error{r.error()};
-  }
-  if (auto r = builder.build_solids(); !r) return Error{r.error()};
-  for (const auto& e : effects) {
-    auto instance = e->build(builder);
-    if (!instance) return Error{instance.error()};
-    instances.push_back(std::move(instance).value());
-  }
-  auto parts = builder.finish(true);
-  if (!parts) return Error{parts.error()};
-  auto compiled = System::compile(std::move(parts).value());
+  auto compiled = compile_parts({{std::move(body)}, {volume(rows), dirichlet(wall)}}, true);
   if (!compiled) return Error{compiled.error()};
-  const auto system = std::move(compiled).value();
+  const auto system = compiled.value().system;
 
   const TbbParallel one(1);
   Assembly assembly(system, one);

@@ -100,4 +100,19 @@ SceneDef make_scene(const Problem& p, const Formulation& f, std::size_t level) {
   return scene;
 }
 
+Cell problem_cell(const Problem& p, const Formulation& f, std::size_t level) {
+  Cell c;
+  c.id = std::string(p.name) + "/" + std::string(f.name) + "/" + std::to_string(level + 1);
+  c.labels = {{"problem", std::string(p.title)},
+              {"formulation", std::string(f.label)},
+              {"mesh", std::to_string(level + 1)}};
+  c.knobs["dimension"] = p.dimension;
+  c.scene = make_scene(p, f, level);
+  c.metric = std::string(p.metric);
+  c.reference = p.reference;
+  c.uncertainty = p.uncertainty;
+  c.source = std::string(p.source);
+  return c;
+}
+
 }  // namespace isochor::studies

@@ -10,6 +10,7 @@
 
 #include "scenes/library.h"
 #include "studies/formulations.h"
+#include "studies/study.h"
 
 namespace isochor::studies {
 
@@ -33,5 +34,8 @@ const Problem& problem(std::string_view name);  // must exist
 std::size_t level_count(const Problem& p, const Formulation& f);
 // The problem on one of its meshes; `level` starts at 0, the coarsest.
 SceneDef make_scene(const Problem& p, const Formulation& f, std::size_t level);
+
+// The same as a cell with the problem's metric and reference, labeled with problem, formulation and mesh.
+Cell problem_cell(const Problem& p, const Formulation& f, std::size_t level);
 
 }  // namespace isochor::studies

@@ -90,5 +90,10 @@ const Study* find_study(std::string_view name);
 // One a file in studies/declarations.
 Study accuracy_study();
 Study locking_study();
+Study solvers_study();
+Study timesteps_study();
+Study effects_study();
+Study scaling_study();
+Study stability_study();
 
 }  // namespace isochor::studies

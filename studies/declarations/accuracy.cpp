@@ -12,18 +12,8 @@ namespace isochor::studies {
 namespace {
 
 Cell cell_of(const Problem& p, const Formulation& f, std::size_t level, const std::string& sweep) {
-  Cell c;
-  c.id = std::string(p.name) + "/" + std::string(f.name) + "/" + std::to_string(level + 1);
-  c.labels = {{"problem", std::string(p.title)},
-              {"formulation", std::string(f.label)},
-              {"mesh", std::to_string(level + 1)},
-              {"sweep", sweep}};
-  c.knobs["dimension"] = p.dimension;
-  c.scene = make_scene(p, f, level);
-  c.metric = std::string(p.metric);
-  c.reference = p.reference;
-  c.uncertainty = p.uncertainty;
-  c.source = std::string(p.source);
+  Cell c = problem_cell(p, f, level);
+  c.labels["sweep"] = sweep;
   return c;
 }
 
@@ -37,7 +27,8 @@ void add_meshes(std::vector<Cell>& out, const Problem& p, bool quick) {
   for (const Formulation& f : formulations()) {
     for (std::size_t level = 0; level < levels(p, f, quick); ++level) {
       out.push_back(cell_of(p, f, level, "mesh"));
-      out.back().guarded = level == 0;
+      // Small, and converging to one answer: a one-field Tet10 needs hundreds of iterations here.
+      out.back().guarded = level == 0 && (p.name == "cantilever" || p.name == "cook") && f.name != "tet10";
     }
   }
 }

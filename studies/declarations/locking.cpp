@@ -41,7 +41,7 @@ void add_tips(std::vector<Cell>& out, bool quick) {
         c.uncertainty = r.uncertainty / std::abs(r.tip);
         c.source = kSource;
       }
-      c.guarded = quick && (nu == 0.3 || nu == 0.499) && f.name != "tet4_node_plain";
+      c.guarded = quick && (nu == 0.3 || nu == 0.499) && f.name != "tet4_node_plain" && f.name != "tet10";
       out.push_back(std::move(c));
     }
   }
