@@ -126,6 +126,7 @@ void Run::record(int step, const StepReport& report) {
   result_.factorizations += report.factorizations;
   result_.solves += report.iterations + report.corrections;
   result_.state_hash = world.state_hash();
+  result_.size = world.size();  // the factor is known after the first step
   result_.wall_s = seconds_since(start_);
   add(result_.stages, report.seconds);
 }

@@ -55,7 +55,12 @@ Result<Blocks> blocks(const Formulation& f, int n, double bulk, double stabiliza
   std::vector<double> values(static_cast<std::size_t>(pattern.nonzeros()));
   assembly.kkt_values(0, values);
   const Index free = system->free_unknowns(), all = pattern.size;
-  Blocks b{Matrix::Zero(free, free), Matrix::Zero(all - free, free), Matrix::Zero(all - free, all - free)};
+  // Compliant rows may have been condensed into the stiffness; hard ones cannot be.
+  if (std::isinf(bulk) && all - free != system->rows()) return Error{"hard rows are not in the matrix"};
+  Blocks b{Matrix::Zero(free, free), Matrix::Zero(all - free, free),
+           Matrix::Zero(system->rows(), system->rows())};
+  for (const ComplianceEntry& e : system->compliance())
+    b.compliance(e.row, e.col) = b.compliance(e.col, e.row) = e.value;
   for (Index c = 0; c < all; ++c) {
     for (std::int64_t k = pattern.column_start[static_cast<std::size_t>(c)];
          k < pattern.column_start[static_cast<std::size_t>(c) + 1]; ++k) {
@@ -65,8 +70,6 @@ Result<Blocks> blocks(const Formulation& f, int n, double bulk, double stabiliza
         b.stiffness(r, c) = b.stiffness(c, r) = v;
       } else if (c < free) {
         b.rows(r - free, c) = v;
-      } else {
-        b.compliance(r - free, c - free) = b.compliance(c - free, r - free) = -v;
       }
     }
   }

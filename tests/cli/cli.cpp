@@ -73,8 +73,9 @@ const char* const kBlock = R"({
 
 TEST_CASE("help, list and version") {
   Shell shell;
-  for (const char* command : {"--help", "run --help", "list --help", "check --help", "version --help", "study --help", "study --list", "list",
-                              "list --json", "version", "version --json", "show finger"}) {
+  for (const char* command :
+       {"--help", "run --help", "list --help", "check --help", "version --help", "study --help",
+        "study --list", "list", "list --json", "version", "version --json", "show finger"}) {
     INFO(command);
     const Outcome o = shell.run(command);
     CHECK(o.code == 0);
@@ -90,7 +91,8 @@ TEST_CASE("wrong arguments are bad input") {
   for (const char* command :
        {"", "fly", "run --threads many", "run --threads -1", "run --budget 0", "run nosuchscene",
         "run no/such/file.json", "run finger --set", "run finger --set x", "check", "check no.msh",
-        "run finger --bogus", "study", "study nosuchstudy", "study accuracy --threads -1", "run finger --set cavities[0].presure=1"}) {
+        "run finger --bogus", "study", "study nosuchstudy", "study accuracy --threads -1", "study --update",
+        "run finger --set cavities[0].presure=1"}) {
     INFO(command);
     const Outcome o = shell.run(command);
     CHECK(o.code == 2);
@@ -98,6 +100,15 @@ TEST_CASE("wrong arguments are bad input") {
   }
   CHECK_THAT(shell.run("run finger --set cavities[0].presure=1").err, Contains("cavities[0].presure"));
   CHECK_FALSE(fs::exists(shell.folder() / "out"));
+}
+
+TEST_CASE("a run explains what it was made of") {
+  Shell shell;
+  shell.write("block.json", kBlock);
+  const Outcome o = shell.run("run block.json --out here --explain");
+  CHECK(o.code == 0);
+  CHECK_THAT(o.out, Contains("by default: the scene names none") && Contains("factorization") &&
+                        Contains("traction \"pull\""));
 }
 
 TEST_CASE("a scene file runs and writes where it is told") {
