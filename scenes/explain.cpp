@@ -134,7 +134,6 @@ Result<Explanation> explain(const SceneDef& scene) {
   out.multipliers = system.rows();
   out.nonzeros = system.kkt().nonzeros();
   out.loads = system.parts().loads.size();
-  bool guarded = false;
   for (const auto& pool : system.parts().stencil_pools) {
     PoolShare share;
     share.name = std::string(pool->name());
@@ -142,13 +141,23 @@ Result<Explanation> explain(const SceneDef& scene) {
     share.blocks = pool->hessian_offset().back();
     share.bytes = slot_bytes(*pool);
     share.seconds = evaluation_seconds(*pool, system.parts().rest);
-    guarded = guarded || share.name == "element_guard";
     out.pools.push_back(std::move(share));
   }
   for (const auto& rows : system.parts().row_pools) {
     PoolShare& share = out.pools[static_cast<std::size_t>(rows->stencil_pool)];
     (rows->law == RowLaw::compliant ? share.multipliers : share.prescribed) += rows->rows();
     share.rows_name += (share.rows_name.empty() ? "" : ", ") + std::string(rows->name());
+  }
+  // The barrier of smoothed bodies is the energy of their single tets; the patches carry the material's.
+  bool guarded = false;
+  const auto& pools = system.parts().stencil_pools;
+  for (std::size_t p = 0; p < pools.size(); ++p) {
+    const bool smoothed = std::any_of(out.pools.begin(), out.pools.end(), [&](const PoolShare& other) {
+      return other.name == out.pools[p].name + "/patches";
+    });
+    if (!smoothed || !pools[p]->has_energy()) continue;
+    guarded = true;
+    out.pools[p].name += " (guard)";
   }
   out.effects = notes_of(scene, guarded);
   return out;
