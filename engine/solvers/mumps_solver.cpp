@@ -213,8 +213,11 @@ std::unique_ptr<LinearSolver> make_mumps_solver(const MumpsOptions& options) {
 bool mumps_graph_ordering(std::span<const Index> start, std::span<const Index> neighbor,
                           OrderingMethod method, std::vector<Index>& position) {
   const Index n = static_cast<Index>(start.size()) - 1;
-  // Where all are neighbors there is nothing to order, and PORD would end the process over it.
+  // Where all are neighbors there is nothing to order. PORD ends the process ("no valid number of stages") on
+  // graphs that collapse to one vertex, as small ones do, where it has little to win anyway.
+  constexpr Index smallest_for_pord = 4000;
   if (neighbor.size() == at(n) * at(n - 1)) return false;
+  if (method == OrderingMethod::pord && n < smallest_for_pord) return false;
   std::vector<MUMPS_INT> row, column;
   for (Index i = 0; i < n; ++i) {
     row.push_back(i + 1);
