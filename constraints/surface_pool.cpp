@@ -165,8 +165,9 @@ void add_cross(Mat3& block, double s, const Vec3& w) {
   block(2, 1) += s * w.x;
 }
 
-// Raises the negative eigenvalues of one face's packed Hessian to zero.
-void project_blocks(std::size_t n, Mat3* block) {
+}  // namespace
+
+void raise_negative_eigenvalues(std::size_t n, Mat3* block) {
   // At most six nodes: the matrix lives on the stack.
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 18, 18>;
   Matrix h(3 * static_cast<int>(n), 3 * static_cast<int>(n));
@@ -187,8 +188,6 @@ void project_blocks(std::size_t n, Mat3* block) {
                        eigen.eigenvectors().transpose();
   each([&](double& value, int row, int col) { value = fixed(row, col); });
 }
-
-}  // namespace
 
 const FaceRule& triangle3_rule() {
   static const FaceRule rule = make_triangle3();
@@ -285,7 +284,7 @@ void EnclosedVolumePool::evaluate(const StencilRequest& request, const StencilSl
       }
     }
     for (std::size_t a = 0; a < n; ++a) slots.gradient[first + a] = sigma * slots.jacobian[first + a];
-    if (block && request.definiteness != Definiteness::exact) project_blocks(n, block);
+    if (block && request.definiteness != Definiteness::exact) raise_negative_eigenvalues(n, block);
   }
 }
 

@@ -32,6 +32,9 @@ const FaceRule& fan3_rule();
 // Rest area that falls to each node of a face, integral of N_a dA [m^2]. 3, 4 (a quadrangle) or 6 nodes.
 std::vector<std::pair<Index, double>> nodal_areas(std::span<const Index> face, std::span<const Vec3> rest);
 
+// Raises the negative eigenvalues of one face's packed Hessian to zero; at most six nodes.
+void raise_negative_eigenvalues(std::size_t nodes, Mat3* block);
+
 // One function a face: V = 1/3 integral (x - origin) . n da [m^3]. Over a closed surface the sum is the
 // enclosed volume, whatever the origin; its gradient is the pressure load, its Hessian the (symmetric)
 // follower stiffness.

@@ -87,6 +87,8 @@ Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, Bui
   for (const auto& def : scene.dirichlet) built.dirichlet.push_back(add(dirichlet(def)));
   for (const auto& def : scene.tractions) built.tractions.push_back(add(traction(def)));
   for (const auto& def : scene.damping) add(damping(def));
+  for (const auto& def : scene.epidermis) add(epidermis(def));
+  for (const auto& def : scene.membranes) add(membrane(def));
   for (const auto& def : scene.forces) built.forces.push_back(add(point_force(def)));
   for (const auto& def : scene.cavities) built.cavities.push_back(add(cavity(def)));
   if (!error.empty()) return Error{error};

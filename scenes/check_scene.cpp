@@ -71,6 +71,8 @@ Result<void> check_all_names(const SceneDef& s) {
   if (auto r = check_names("dirichlet", s.dirichlet, plain, seen); !r) return r;
   if (auto r = check_names("cavities", s.cavities, plain, seen); !r) return r;
   if (auto r = check_names("tractions", s.tractions, plain, seen); !r) return r;
+  if (auto r = check_names("epidermis", s.epidermis, plain, seen); !r) return r;
+  if (auto r = check_names("membranes", s.membranes, plain, seen); !r) return r;
   return check_names("forces", s.forces, plain, seen);
 }
 

@@ -101,8 +101,11 @@ static Result<MaterialPtr> make_matrix(const MaterialDef& def) {
 
 Result<MaterialPtr> make_material(const MaterialDef& def) {
   auto matrix = make_matrix(def);
-  if (!matrix || def.fibers.empty()) return matrix;
-  return with_fibers(std::move(matrix).value(), def.fibers);
+  if (matrix && !def.fibers.empty()) matrix = with_fibers(std::move(matrix).value(), def.fibers);
+  const CompressionPenalty& penalty = def.compression_penalty;
+  const bool penalized = penalty.modulus != 0 || penalty.beta != CompressionPenalty{}.beta;
+  if (!matrix || !penalized) return matrix;
+  return with_compression_penalty(std::move(matrix).value(), penalty);
 }
 
 }  // namespace isochor

@@ -50,7 +50,8 @@ struct MaterialDef {
   ElasticConstants constants;  // of laws with constants of their own, only Poisson's ratio counts
   LawConstants own;
   std::vector<FiberFamily> fibers;
-  double density = 1000;  // [kg/m^3]
+  CompressionPenalty compression_penalty;  // as it is made: none
+  double density = 1000;                   // [kg/m^3]
 };
 
 struct MeshFile {
@@ -144,6 +145,8 @@ struct SceneDef {
   std::vector<TractionDef> tractions;
   std::vector<PointForceDef> forces;
   std::vector<DampingDef> damping;
+  std::vector<EpidermisDef> epidermis;
+  std::vector<MembraneDef> membranes;
   Vec3 gravity{};                             // [m/s^2]
   Curve gravity_amount = Curve::constant(1);  // scales it over time
   AnalysisDef analysis;

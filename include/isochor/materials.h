@@ -128,4 +128,13 @@ Result<MaterialPtr> with_fibers(MaterialPtr matrix, const std::vector<FiberFamil
 // positive factor, one a cell of the body's mesh.
 Result<MaterialPtr> with_stiffness_field(MaterialPtr base, std::vector<double> factor);
 
+// Lambda U(J; beta) with U = (J - 1)^2 (beta (J - 1)^2 + 6) / 12, added to the energy of every element: holds
+// single elements against crushing where volume rows keep only the volume of a zone (Sheen, Larionov & Pai
+// 2021). At small strain it adds its modulus to the bulk modulus.
+struct CompressionPenalty {
+  double modulus = 0;  // Lambda [Pa] > 0
+  double beta = 9;     // [-] >= 0, how soon it stiffens; 0: quadratic
+};
+Result<MaterialPtr> with_compression_penalty(MaterialPtr base, const CompressionPenalty& penalty);
+
 }  // namespace isochor

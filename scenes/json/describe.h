@@ -26,6 +26,12 @@ void describe(Io& io, FiberFamily& f) {
 }
 
 template <class Io>
+void describe(Io& io, CompressionPenalty& p) {
+  io.number("modulus", p.modulus, 0.0);
+  io.number("beta", p.beta, CompressionPenalty{}.beta);
+}
+
+template <class Io>
 void describe(Io& io, MaterialDef& m) {
   io.text("region", m.region);
   io.word("law", m.law, MaterialLaw::neo_hookean);
@@ -46,6 +52,7 @@ void describe(Io& io, MaterialDef& m) {
   io.number("resistance", m.own.resistance, 0.0);
   io.number("threshold", m.own.threshold, 0.1);
   io.list("fibers", m.fibers);
+  io.optional_object("compression_penalty", m.compression_penalty, m.compression_penalty.modulus != 0);
   io.number("density", m.density, 1000.0);
 }
 
@@ -172,6 +179,28 @@ void describe(Io& io, DampingDef& d) {
 }
 
 template <class Io>
+void describe(Io& io, EpidermisDef& e) {
+  io.text("name", e.name);
+  io.body("body", e.body);
+  io.names("surfaces", e.surfaces);
+  io.number("young", e.young, 0.0);
+  io.number("poisson", e.poisson, 0.0);
+  io.number("thickness", e.thickness, 0.0);
+  io.number_or_inf("stiffness", e.stiffness, 0.0);
+  io.number("gamma", e.gamma, 0.0);
+}
+
+template <class Io>
+void describe(Io& io, MembraneDef& m) {
+  io.text("name", m.name);
+  io.body("body", m.body);
+  io.names("surfaces", m.surfaces);
+  io.number("young", m.young, 0.0);
+  io.number("poisson", m.poisson, 0.5);
+  io.number("thickness", m.thickness, 0.0);
+}
+
+template <class Io>
 void describe(Io& io, AnalysisDef& a) {
   io.word("type", a.type, AnalysisType::statics);
   io.word("scheme", a.scheme, SchemeWord::implicit_euler);
@@ -231,6 +260,8 @@ void describe(Io& io, SceneDef& s) {
   io.list("tractions", s.tractions);
   io.list("forces", s.forces);
   io.list("damping", s.damping);
+  io.list("epidermis", s.epidermis);
+  io.list("membranes", s.membranes);
   io.vector("gravity", s.gravity, Vec3{});
   io.curve("gravity_amount", s.gravity_amount, CurveStart::zero, !(s.gravity == Vec3{}));
   io.list("probes", s.probes);

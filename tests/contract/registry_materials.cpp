@@ -269,6 +269,34 @@ void add_fibers(std::vector<MaterialCase>& out) {
   out.push_back(c);
 }
 
+// On a base with a barrier, and on one that lives through inversion.
+void add_compression_penalty(std::vector<MaterialCase>& out) {
+  const auto penalty = [](const Gradient9& F) {
+    const HyperDual d = determinant(F) - 1.0;
+    return 2.5 / 12 * d * d * (9.0 * d * d + 6.0);
+  };
+  MaterialCase c;
+  c.covers = {"materials/compression_penalty"};
+  c.name = "neo_hookean with compression penalty";
+  c.material = made(isochor::with_compression_penalty(made(isochor::neo_hookean(constants())), {2.5, 9}))
+                   ->distortional();
+  c.energy = [=](const Gradient9& F) {
+    return 0.5 * kMu * (trace_C(F) - 3.0) - kMu * log(determinant(F)) + penalty(F);
+  };
+  c.scale = 10;
+  c.largest_J = 2;
+  out.push_back(c);
+  c.name = "stable_neo_hookean with compression penalty";
+  c.material =
+      made(isochor::with_compression_penalty(made(isochor::stable_neo_hookean(constants())), {2.5, 9}))
+          ->distortional();
+  c.energy = [=](const Gradient9& F) {
+    return 0.5 * kMu * (trace_C(F) - 3.0) - kMu * (determinant(F) - 1.0) + penalty(F);
+  };
+  c.inverted = true;
+  out.push_back(c);
+}
+
 void add_element_guard(std::vector<MaterialCase>& out) {
   constexpr double b = 1.3, threshold = 0.5;
   MaterialCase c;
@@ -306,6 +334,7 @@ std::vector<MaterialCase> material_cases() {
   add_linear(out);
   add_native(out);
   add_fibers(out);
+  add_compression_penalty(out);
   add_element_guard(out);
   return out;
 }

@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "contract/registry.h"
 #include "support/meshes.h"
 
@@ -160,6 +162,35 @@ void add_damping(std::vector<SceneCase>& out) {
   }
 }
 
+// Flat and curved faces; a skin with and without give, a membrane at both ends of Poisson's ratio.
+void add_skins(std::vector<SceneCase>& out) {
+  for (const auto& [element, name] : kElements) {
+    if (element == Element::tet4_edge_smoothed) continue;
+    SceneCase c{name, {}, solid_mesh(element), element, {{"", material(0.3), 1000}}, {}};
+    for (const double stiffness : {2.0, std::numeric_limits<double>::infinity()}) {
+      isochor::EpidermisDef skin;
+      skin.surfaces = {"z1", "x1"};
+      skin.stiffness = stiffness;
+      skin.gamma = 3;
+      c.name = name + ", epidermis of stiffness " + std::to_string(stiffness);
+      c.covers = {"constraints/epidermis", "constraints/surface_strain"};
+      c.effects = {isochor::epidermis(skin)};
+      if (stiffness < 10 || element == Element::tet10) out.push_back(c);
+    }
+    for (const double poisson : {0.0, 0.3, 0.5}) {
+      isochor::MembraneDef skin;
+      skin.surfaces = {"z1", "x1"};
+      skin.young = 100;
+      skin.thickness = 0.01;
+      skin.poisson = poisson;
+      c.name = name + ", membrane, nu = " + std::to_string(poisson);
+      c.covers = {"constraints/membrane", "constraints/surface_strain"};
+      c.effects = {isochor::membrane(skin)};
+      out.push_back(c);
+    }
+  }
+}
+
 // Fibers along a field of directions, in a matrix whose stiffness varies from cell to cell.
 void add_fields(std::vector<SceneCase>& out) {
   for (const auto& [element, name] : kElements) {
@@ -197,6 +228,7 @@ std::vector<SceneCase> scene_cases() {
   add_supports_and_loads(out);
   add_damping(out);
   add_fields(out);
+  add_skins(out);
   return out;
 }
 
