@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/material_model.h"
+#include "isochor/materials.h"
 #include "materials/energy_batch.h"
 
 namespace isochor {
