@@ -1,7 +1,9 @@
 #include "constraints/volume_rows.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <set>
 
 namespace isochor {
 
@@ -58,6 +60,66 @@ std::shared_ptr<RowPool> total_volume_row(const VolumeRegion& region) {
   finish_row(*rows, volume, region);
   rows->compliance.push_back({0, 0, softness * region.inverse_bulk});
   return rows;
+}
+
+std::shared_ptr<RowPool> zone_volume_rows(const VolumeRegion& region, const VolumeZones& zones) {
+  auto rows = std::make_shared<VolumeRowPool>(region.name);
+  rows->stencil_pool = region.stencil_pool;
+  const SolidPool& pool = *region.pool;
+  const auto inverse_bulk = [&](std::size_t z) { return zones.compliance[z] * region.inverse_bulk; };
+  std::vector<double> sharing(at(pool.stencils()), 0);
+  for (std::size_t z = 0; z < zones.stencils.size(); ++z) {
+    if (!std::isfinite(inverse_bulk(z)) || inverse_bulk(z) == 0) continue;
+    for (const Index s : zones.stencils[z]) sharing[at(s)] += 1;
+  }
+  for (std::size_t z = 0; z < zones.stencils.size(); ++z) {
+    if (!std::isfinite(inverse_bulk(z))) continue;
+    const bool hard = inverse_bulk(z) == 0;
+    double volume = 0, softness = 0;
+    for (const Index s : zones.stencils[z]) {
+      const double weight = hard ? 1 : 1 / sharing[at(s)], share = weight * pool.volume(s);
+      volume += share;
+      softness += share / region.stiffness_factor(s);
+      for (int k = 0; k < pool.functions(); ++k) {
+        rows->map.item.push_back(s * pool.functions() + k);
+        rows->weight.push_back(weight);
+      }
+    }
+    if (!hard) rows->compliance.push_back({rows->rows(), rows->rows(), softness * inverse_bulk(z)});
+    finish_row(*rows, volume, region);
+  }
+  return rows;
+}
+
+VolumeZones ring_zones(const VolumeRegion& region, int rings) {
+  const SolidPool& pool = *region.pool;
+  const auto corners = [&](Index s) { return pool.nodes()[s].first(at(region.corners)); };
+  std::map<Index, std::vector<Index>> around;
+  for (Index s = 0; s < pool.stencils(); ++s) {
+    for (const Index n : corners(s)) around[n].push_back(s);
+  }
+  VolumeZones out;
+  std::set<std::vector<Index>> seen;
+  for (const auto& [center, first] : around) {
+    std::set<Index> zone(first.begin(), first.end());
+    std::vector<Index> outermost = first;
+    for (int k = 1; k < rings; ++k) {
+      std::vector<Index> next;
+      for (const Index s : outermost) {
+        for (const Index n : corners(s)) {
+          for (const Index t : around[n]) {
+            if (zone.insert(t).second) next.push_back(t);
+          }
+        }
+      }
+      outermost = std::move(next);
+    }
+    std::vector<Index> sorted(zone.begin(), zone.end());
+    if (!seen.insert(sorted).second) continue;
+    out.stencils.push_back(std::move(sorted));
+    out.compliance.push_back(1);
+  }
+  return out;
 }
 
 std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double tau,

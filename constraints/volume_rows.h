@@ -47,4 +47,20 @@ std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double ta
 // One row over all stencils of the region: phi = volume integral of Phi, C = V/kappa.
 std::shared_ptr<RowPool> total_volume_row(const VolumeRegion& region);
 
+// Sets of stencils that may overlap, one row each. `compliance` scales 1/kappa of each; a set of infinite
+// compliance gets no row.
+struct VolumeZones {
+  std::vector<std::vector<Index>> stencils;  // ascending
+  std::vector<double> compliance;
+};
+
+// Hard zones: phi_z = sum of the integrals of Phi over the zone, which keeps its volume. Compliant ones share
+// the stencils that they have in common: each counts 1/n_e of it, n_e the number of compliant zones over it,
+// and C = sum V_e/(n_e kappa). So a uniform change of volume meets the bulk modulus kappa and a uniform
+// pressure, however zones overlap.
+std::shared_ptr<RowPool> zone_volume_rows(const VolumeRegion& region, const VolumeZones& zones);
+
+// The zones of all stencils within `rings` rings around each corner node; equal ones once.
+VolumeZones ring_zones(const VolumeRegion& region, int rings);
+
 }  // namespace isochor

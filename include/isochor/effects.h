@@ -19,8 +19,18 @@ struct Selection {
 // ---- volume
 // ----------------------------------------------------------------------------------------------------
 
-enum class VolumeSpace : std::uint8_t { node, element, body };
+enum class VolumeSpace : std::uint8_t { node, element, body, ring, zone };
 enum class VolumeStrainKind : std::uint8_t { linear, logarithmic };  // J - 1, log J
+
+// A set of cells with one row; zones may overlap. What fits any of the criteria is in it, all in one region.
+struct VolumeZone {
+  std::string name;
+  std::vector<std::string> regions;
+  std::vector<Index> cells;                // of the body's mesh
+  std::vector<std::array<Vec3, 2>> boxes;  // lower and upper corner [m]: cells with their center inside
+  // Times 1/kappa: 0 is a hard zone, infinity leaves the row out.
+  double compliance = 1;
+};
 
 struct VolumeDef {
   std::string name = "volume";
@@ -30,6 +40,9 @@ struct VolumeDef {
   // Regions it covers; empty: all. Rows are split at interfaces between regions, where the pressure jumps;
   // `body` gives one row a region.
   std::vector<std::string> regions;
+  // Space ring: one row over the cells within so many rings around each node, 1 those that touch it.
+  int rings = 1;
+  std::vector<VolumeZone> zones;  // space zone
   // Dohrmann-Bochev stabilization of nodal rows on linear tets; ignored where inf-sup holds. 0: off.
   double stabilization = 1;
   // No bulk compliance whatever the material says (nodal rows keep their stabilization, which leaves totals

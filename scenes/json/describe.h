@@ -90,6 +90,15 @@ void describe(Io& io, SceneBody& b) {
 }
 
 template <class Io>
+void describe(Io& io, VolumeZone& z) {
+  io.required_text("name", z.name);
+  io.names("regions", z.regions);
+  io.indices("cells", z.cells);
+  io.boxes("boxes", z.boxes);
+  io.number_or_inf("compliance", z.compliance, 1.0);
+}
+
+template <class Io>
 void describe(Io& io, VolumeRows& v) {
   io.text("name", v.def.name);
   io.body("body", v.def.body);
@@ -99,6 +108,8 @@ void describe(Io& io, VolumeRows& v) {
   if (!v.none) v.def.space = static_cast<VolumeSpace>(space);
   io.word("strain", v.def.strain, VolumeStrainKind::linear);
   io.names("regions", v.def.regions);
+  io.integer("rings", v.def.rings, 1);
+  io.list("zones", v.def.zones);
   io.number("stabilization", v.def.stabilization, 1.0);
   io.flag("hard", v.def.hard, false);
   io.flag("carries_bulk", v.def.carries_bulk, true);

@@ -56,9 +56,10 @@ ISOCHOR_WORDS(Quantity, 12, {Quantity::displacement, "displacement"},
               {Quantity::newton_iterations, "newton_iterations"});
 
 // "none" stands beside the spaces of the engine: no rows at all.
-enum class VolumeSpaceWord : std::uint8_t { node, element, body, none };
-ISOCHOR_WORDS(VolumeSpaceWord, 4, {VolumeSpaceWord::node, "node"}, {VolumeSpaceWord::element, "element"},
-              {VolumeSpaceWord::body, "body"}, {VolumeSpaceWord::none, "none"});
+enum class VolumeSpaceWord : std::uint8_t { node, element, body, ring, zone, none };
+ISOCHOR_WORDS(VolumeSpaceWord, 6, {VolumeSpaceWord::node, "node"}, {VolumeSpaceWord::element, "element"},
+              {VolumeSpaceWord::body, "body"}, {VolumeSpaceWord::ring, "ring"},
+              {VolumeSpaceWord::zone, "zone"}, {VolumeSpaceWord::none, "none"});
 
 #undef ISOCHOR_WORDS
 

@@ -154,9 +154,9 @@ TEST_CASE("a membrane resists shear, an epidermis does not") {
   double force[2];
   for (int k = 0; k < 2; ++k) {
     Block block;
-    const EffectId floor = test::hold(block.world, block.body, {"y0"});
-    test::hold(block.world, block.body, {"y1"}, {}, {0.3, 0, 0});
-    test::hold(block.world, block.body, {"x0", "x1", "z0", "z1"}, {{0, 1, 0}, {0, 0, 1}});
+    const EffectId floor = test::hold(block.world, block.body, {"y0"}, {{1, 0, 0}});
+    test::hold(block.world, block.body, {"y1"}, {{1, 0, 0}}, {0.3, 0, 0});
+    test::hold(block.world, block.body, {"x0", "x1", "y0", "y1", "z0", "z1"}, {{0, 1, 0}, {0, 0, 1}});
     MembraneDef sheet;
     sheet.body = block.body;
     sheet.surfaces = {"z1"};

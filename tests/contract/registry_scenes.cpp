@@ -63,6 +63,20 @@ void add_volumes(std::vector<SceneCase>& out) {
         out.push_back(c);
       }
     }
+    for (const bool hard : {false, true}) {
+      isochor::VolumeZone low{"low", {}, {0, 1, 2, 3, 4, 5, 6, 7}, {}, hard ? 0.0 : 1.0};
+      isochor::VolumeZone all{"all", {}, {}, {{Vec3{-9, -9, -9}, Vec3{9, 9, 9}}}, 2};
+      isochor::VolumeDef def;
+      def.space = hard ? VolumeSpace::zone : VolumeSpace::ring;
+      def.rings = 2;
+      if (hard) def.zones = {low, all};
+      SceneCase c = one_field;
+      c.name = name + (hard ? ", hard zone in a compliant one" : ", rings");
+      c.covers = covers;
+      c.effects = {isochor::volume(def)};
+      c.numbered_cells = hard;
+      out.push_back(c);
+    }
     SceneCase regions = one_field;
     regions.name = name + ", two regions at nu = 0.5";
     regions.mesh = divided(solid_mesh(element), 0.5);

@@ -1,0 +1,201 @@
+// Volume rows over rings and zones: bulk stiffness under overlap, volumes that stay, mixtures, refusals.
+#include <cmath>
+#include <limits>
+
+#include "numbers/cube.h"
+#include "support/compiled.h"
+#include "support/worlds.h"
+
+using namespace isochor;
+using test::value;
+
+namespace {
+
+// Systems of a few unknowns.
+WorldOptions small_system() {
+  WorldOptions options = test::static_options();
+  options.solver = Solver::eigen;
+  return options;
+}
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+VolumeDef rows(VolumeSpace space, int rings = 1) {
+  VolumeDef def;
+  def.space = space;
+  def.rings = rings;
+  return def;
+}
+
+VolumeZone half(const char* name, double from, double to, double compliance = 1) {
+  VolumeZone z;
+  z.name = name;
+  z.boxes = {{Vec3{from, -1, -1}, Vec3{to, 2, 2}}};
+  z.compliance = compliance;
+  return z;
+}
+
+// Two zones that share the middle third of a unit box.
+VolumeDef overlapping(double compliance) {
+  VolumeDef def = rows(VolumeSpace::zone);
+  def.zones = {half("low", -1, 0.6, compliance), half("high", 0.4, 2, compliance)};
+  return def;
+}
+
+// Volume of the cells whose centers lie between two planes.
+double slab_volume(const World& world, BodyId body, double from, double to) {
+  const Mesh& mesh = world.mesh(body);
+  double sum = 0;
+  for (std::size_t c = 0; c < mesh.cells.size(); c += 4) {
+    Vec3 center;
+    std::array<Vec3, 4> p;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto n = static_cast<std::size_t>(mesh.cells[c + k]);
+      center += 0.25 * mesh.nodes[n];
+      p[k] = world.positions(body)[n];
+    }
+    if (center.x < from || center.x > to) continue;
+    sum += dot(p[1] - p[0], cross(p[2] - p[0], p[3] - p[0])) / 6;
+  }
+  return sum;
+}
+
+std::string refusal(const VolumeDef& def, bool two_regions = false) {
+  World world = test::make_world(small_system());
+  Mesh mesh = test::box({4, 2, 2});
+  test::add_body(world, two_regions ? test::divided(mesh, 0.5) : mesh, Element::tet4,
+                 test::neo_hookean(1e5, 0.4));
+  test::hold(world, BodyId{0}, {"x0"});
+  auto added = world.add(volume(def));
+  if (!added) return added.error();
+  auto compiled = world.compile();
+  return compiled ? "" : compiled.error();
+}
+
+}  // namespace
+
+TEST_CASE("overlapping compliant rows are as stiff in bulk as asked") {
+  // All faces move with x -> (1 + s) x: stress 3 s K whatever the rows; inner nodes stay on the affine map.
+  constexpr double s = 1e-5, young = 1e5, nu = 0.45;
+  for (const Element element : {Element::tet4, Element::tet10}) {
+    for (const VolumeDef& def : {rows(VolumeSpace::element), rows(VolumeSpace::ring, 1),
+                                 rows(VolumeSpace::ring, 2), rows(VolumeSpace::ring, 4), overlapping(1)}) {
+      World world = test::make_world(small_system());
+      const CellType type = element == Element::tet10 ? CellType::tet10 : CellType::tet4;
+      const BodyId body =
+          test::add_body(world, test::box({3, 2, 2}, {1, 1, 1}, type), element, test::neo_hookean(young, nu));
+      test::move_linearly(world, body, {"x0", "x1", "y0", "y1", "z0", "z1"}, {},
+                          [](const Vec3& p) { return s * p; });
+      value(world.add(volume(def)));
+      test::must_advance(world);
+      CHECK(test::distance_from(world, body, [](const Vec3& p) { return (1 + s) * p; }) < 1e-10);
+      const BodyFields fields = world.fields(body);
+      const double bulk = young / (3 * (1 - 2 * nu));
+      for (const double p : fields.cell_pressure) CHECK(p == Approx(3 * s * bulk).epsilon(1e-4));
+    }
+  }
+}
+
+TEST_CASE("hard zones keep their volumes, also where they overlap") {
+  World world = test::make_world(small_system());
+  const BodyId body = test::add_body(world, test::box({5, 2, 2}), Element::tet4, test::neo_hookean(1e5, 0.4));
+  test::hold(world, body, {"x0"});
+  value(world.add(volume(rows(VolumeSpace::element))));
+  VolumeDef zones = overlapping(0);
+  zones.name = "zones";
+  zones.carries_bulk = false;
+  value(world.add(volume(zones)));
+  TractionDef pull;
+  pull.body = body;
+  pull.surface = "x1";
+  pull.traction = {5e4, 0, 2e4};
+  value(world.add(traction(pull)));
+  test::must_advance(world);
+  CHECK(slab_volume(world, body, -1, 0.6) == Approx(0.6).epsilon(1e-9));
+  CHECK(slab_volume(world, body, 0.4, 2) == Approx(0.6).epsilon(1e-9));
+  CHECK(std::abs(slab_volume(world, body, -1, 0.2) - 0.2) > 1e-4);  // no zone of its own
+}
+
+TEST_CASE("pressures at nodes with nu = 0.45 go along with a hard zone over the whole body") {
+  double volume_now[2];
+  for (int k = 0; k < 2; ++k) {
+    World world = test::make_world(small_system());
+    const BodyId body = test::add_body(world, test::box({3, 2, 2}), Element::tet4_edge_smoothed,
+                                       test::neo_hookean(1e5, 0.45));
+    test::hold(world, body, {"x0"});
+    test::add_volume(world, body);
+    if (k == 1) {
+      VolumeDef whole = rows(VolumeSpace::body);
+      whole.name = "whole";
+      whole.hard = true;
+      whole.carries_bulk = false;
+      value(world.add(volume(whole)));
+    }
+    TractionDef pull;
+    pull.body = body;
+    pull.surface = "x1";
+    pull.traction = {5e4, 0, 0};
+    value(world.add(traction(pull)));
+    test::must_advance(world);
+    volume_now[k] = world.measures(body).volume;
+  }
+  CHECK(volume_now[0] > 1.01);
+  CHECK(volume_now[1] == Approx(1).epsilon(1e-9));
+}
+
+TEST_CASE("a factor on the compliance softens a zone, infinity takes its row away") {
+  double grown[3];
+  const double factors[] = {1, 5, kInfinity};
+  for (int k = 0; k < 3; ++k) {
+    World world = test::make_world(small_system());
+    const BodyId body =
+        test::add_body(world, test::box({4, 2, 2}), Element::tet4, test::neo_hookean(1e5, 0.45));
+    test::slide_on_axes(world, body);
+    VolumeDef zones = rows(VolumeSpace::zone);
+    zones.carries_bulk = true;
+    zones.zones = {half("low", -1, 0.5), half("high", 0.5, 2, factors[k])};
+    if (factors[k] == kInfinity) {
+      CHECK_THAT(refusal(zones), ContainsSubstring("no compliant zone"));
+      zones.zones[0].compliance = 0;
+      zones.hard = true;
+      zones.zones.pop_back();
+    }
+    value(world.add(volume(zones)));
+    TractionDef pull;
+    pull.body = body;
+    pull.surface = "x1";
+    pull.traction = {1e3, 0, 0};
+    value(world.add(traction(pull)));
+    test::must_advance(world);
+    grown[k] = slab_volume(world, body, 0.5, 2) - 0.5;
+  }
+  CHECK(grown[1] > 2 * grown[0]);
+  CHECK(grown[2] > grown[1]);
+}
+
+TEST_CASE("zones and rings that mean nothing are refused") {
+  VolumeDef def = rows(VolumeSpace::ring, 0);
+  CHECK_THAT(refusal(def), ContainsSubstring("rings = 0"));
+  def = rows(VolumeSpace::zone);
+  CHECK_THAT(refusal(def), ContainsSubstring("zones is empty"));
+  def.zones = {half("all", -1, 2)};
+  CHECK(refusal(def).empty());
+  CHECK_THAT(refusal(def, true), ContainsSubstring("not in one region"));
+  def.space = VolumeSpace::node;
+  CHECK_THAT(refusal(def), ContainsSubstring("change space"));
+  def.space = VolumeSpace::zone;
+  def.zones[0].compliance = -1;
+  CHECK_THAT(refusal(def), ContainsSubstring("compliance = -1"));
+  def.zones = {half("nothing", 3, 4)};
+  CHECK_THAT(refusal(def), ContainsSubstring("it has no cells"));
+  def.zones = {half("left", -1, 0.5)};
+  CHECK_THAT(refusal(def), ContainsSubstring("no compliant zone"));
+  def.zones[0].cells = {5000};
+  CHECK_THAT(refusal(def), ContainsSubstring("cell 5000"));
+  // The same cells twice with zero compliance say the same thing twice.
+  def.zones = {half("left", -1, 0.5, 0), half("left again", -1, 0.5, 0)};
+  def.carries_bulk = false;
+  CHECK_THAT(refusal(def), ContainsSubstring("\"left again\" repeats"));
+  def.zones = {half("left", -1, 0.5, 0), half("right", 0.5, 2, 0), half("both", -1, 2, 0)};
+  CHECK_THAT(refusal(def), ContainsSubstring("\"both\" repeats"));
+}
