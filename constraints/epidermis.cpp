@@ -112,10 +112,6 @@ class EpidermisEffect final : public EffectSource {
     if (!named) return Error{named.error()};
     const BodyData& body = builder.body(def_.body);
     const auto per_face = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
-    if (per_face != 3 && per_face != 6) {
-      return Error{who() + "body \"" + body.name + "\" has faces of " + std::to_string(per_face) +
-                   " nodes; a skin needs triangles, so use a tetrahedral mesh"};
-    }
     const auto faces = distinct_faces(named.value(), per_face);
     const auto pool = std::make_shared<AreaPool>(def_.name, per_face, faces, builder.rest(), def_.gamma);
     double mu = 0;

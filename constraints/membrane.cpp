@@ -81,12 +81,7 @@ class MembraneEffect final : public EffectSource {
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     auto named = builder.faces(def_.body, def_.surfaces, def_.name);
     if (!named) return Error{named.error()};
-    const BodyData& body = builder.body(def_.body);
-    const auto per_face = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
-    if (per_face != 3 && per_face != 6) {
-      return Error{who() + "body \"" + body.name + "\" has faces of " + std::to_string(per_face) +
-                   " nodes; a membrane needs triangles, so use a tetrahedral mesh"};
-    }
+    const auto per_face = static_cast<std::size_t>(nodes_per_face(builder.body(def_.body).mesh.cell_type));
     const auto faces = distinct_faces(named.value(), per_face);
     const double mu = def_.young / (2 * (1 + def_.poisson));
     const auto pool = std::make_shared<MembranePool>(def_.name, per_face, faces, builder.rest(),

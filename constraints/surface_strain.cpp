@@ -9,9 +9,7 @@ namespace isochor {
 
 SurfaceStrainPool::SurfaceStrainPool(std::string name, Gives gives, std::size_t nodes_per_face,
                                      std::span<const Index> faces, std::span<const Vec3> rest)
-    : name_(std::move(name)),
-      gives_(gives),
-      rule_(nodes_per_face == 3 ? &triangle3_rule() : &triangle6_rule()) {
+    : name_(std::move(name)), gives_(gives), rule_(&face_rule(nodes_per_face)) {
   for (std::size_t f = 0; f < faces.size(); f += nodes_per_face) {
     const auto nodes = faces.subspan(f, nodes_per_face);
     nodes_.push(nodes);

@@ -21,7 +21,7 @@ class SurfaceStrainPool : public StencilPool {
  public:
   enum class Gives : std::uint8_t { energy, function };
 
-  // `faces`: nodes_per_face scene nodes each, 3 (flat) or 6 (quadratic).
+  // `faces`: nodes_per_face scene nodes each, 3, 4 or 6.
   SurfaceStrainPool(std::string name, Gives gives, std::size_t nodes_per_face, std::span<const Index> faces,
                     std::span<const Vec3> rest);
 
