@@ -64,7 +64,7 @@ void add_volumes(std::vector<SceneCase>& out) {
       }
     }
     for (const bool hard : {false, true}) {
-      isochor::VolumeZone low{"low", {}, {0, 1, 2, 3, 4, 5, 6, 7}, {}, hard ? 0.0 : 1.0};
+      isochor::VolumeZone low{"low", {}, {0, 1, 2}, {}, hard ? 0.0 : 1.0};
       isochor::VolumeZone all{"all", {}, {}, {{Vec3{-9, -9, -9}, Vec3{9, 9, 9}}}, 2};
       isochor::VolumeDef def;
       def.space = hard ? VolumeSpace::zone : VolumeSpace::ring;
