@@ -4,6 +4,8 @@
 #include <map>
 #include <optional>
 
+#include "constraints/chamber_network.h"
+#include "constraints/embedding.h"
 #include "constraints/surface_pool.h"
 #include "engine/builder.h"
 #include "engine/mesh/cell_shape.h"
@@ -306,6 +308,21 @@ class CavityRow final : public RowPool {
   std::shared_ptr<Amount> amount_;
 };
 
+// The weight of a liquid: its potential energy over density times gravity, as a row whose multiplier is
+// given.
+class WeightRow final : public RowPool {
+ public:
+  WeightRow(std::string name, double density_gravity, Curve curve)
+      : name_(std::move(name)), weight_(density_gravity), curve_(std::move(curve)) {}
+  std::string_view name() const override { return name_; }
+  void update(double t, std::span<double> value) const override { value[0] = weight_ * evaluate(curve_, t); }
+
+ private:
+  std::string name_;
+  double weight_;  // density times gravity [Pa/m]
+  Curve curve_;
+};
+
 class CavityInstance final : public EffectInstance {
  public:
   CavityInstance(std::string name, std::shared_ptr<const EnclosedVolumePool> pool,
@@ -316,12 +333,20 @@ class CavityInstance final : public EffectInstance {
         row_pool_(row_pool),
         amount_(std::move(amount)) {}
 
+  // Of a chamber in a network.
+  std::shared_ptr<const ChamberNetwork> network;
+  Index chamber = 0;
+
   Amount* amount() override { return amount_.get(); }
   void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
-    const double lambda = row_->law == RowLaw::prescribed ? row_->amount_value(c.state.t)
-                                                          : c.state.lambda[at(c.system.first_row(row_pool_))];
+    const bool given = !network && row_->law == RowLaw::prescribed;
+    const double lambda =
+        given ? row_->amount_value(c.state.t) : c.state.lambda[at(c.system.first_row(row_pool_) + chamber)];
     out.push_back({name_, "cavity", "pressure", "Pa", -lambda});
     out.push_back({name_, "cavity", "volume", "m^3", pool_->volume(c.state.x)});
+    if (!network) return;
+    const auto memory = std::span<const double>(c.state.extra).subspan(at(c.system.first_memory(row_pool_)));
+    out.push_back({name_, "cavity", "content", "m^3", ChamberNetwork::held(memory, chamber)});
   }
 
  private:
@@ -341,6 +366,10 @@ class CavityEffect final : public EffectSource {
     for (const auto& p : def_.amount.points) {
       if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
         return Error{who() + "its amount has a value that is no number"};
+      if (def_.control == CavityControl::gas && p[1] <= 0) {
+        return Error{who() + "gas amount " + std::to_string(p[1]) +
+                     "; some gas must stay in the chamber, give positive amounts"};
+      }
       if (def_.control != CavityControl::pressure && p[1] <= 0) {
         return Error{who() + "volume amount " + std::to_string(p[1]) +
                      "; a chamber's volume must stay positive"};
@@ -348,7 +377,7 @@ class CavityEffect final : public EffectSource {
     }
     if (def_.surfaces.empty())
       return Error{who() + "no surface named; name the faces that bound the chamber"};
-    return {};
+    return check_content();
   }
 
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
@@ -390,6 +419,24 @@ class CavityEffect final : public EffectSource {
 
  private:
   std::string who() const { return "cavity \"" + def_.name + "\": "; }
+  bool has_law() const { return def_.control == CavityControl::gas || def_.control == CavityControl::liquid; }
+
+  Result<void> check_content() const {
+    if (!(def_.polytropic >= 1) || !std::isfinite(def_.polytropic)) {
+      return Error{who() + "polytropic = " + std::to_string(def_.polytropic) +
+                   "; it is 1 for an isothermal gas and 1.4 for air without heat exchange"};
+    }
+    if (!(def_.ambient > 0) || !std::isfinite(def_.ambient)) {
+      return Error{who() + "ambient = " + std::to_string(def_.ambient) +
+                   " Pa; the absolute pressure outside must be positive, 101325 Pa at sea level"};
+    }
+    if (!(def_.density >= 0) || !std::isfinite(def_.density) ||
+        !std::isfinite(dot(def_.gravity, def_.gravity))) {
+      return Error{who() + "density = " + std::to_string(def_.density) +
+                   " kg/m^3; density and gravity of the liquid must be finite, the density not negative"};
+    }
+    return {};
+  }
 
   Result<void> check_opening(const Builder& builder, const BodyData& body,
                              const std::vector<Index>& loop) const {
@@ -410,28 +457,74 @@ class CavityEffect final : public EffectSource {
   Result<std::unique_ptr<EffectInstance>> finish(Builder& builder,
                                                  const std::shared_ptr<EnclosedVolumePool>& pool) const {
     const double rest_volume = pool->volume(builder.rest());
-    if (def_.control != CavityControl::pressure && rest_volume <= 0) {
+    const bool needs_chamber = def_.control != CavityControl::pressure || def_.density > 0;
+    if (needs_chamber && rest_volume <= 0) {
       return Error{who() + "its surface encloses the body rather than a chamber (signed volume " +
                    std::to_string(rest_volume) +
                    " m^3); volume control needs a chamber, use pressure control outside"};
     }
     auto amount = std::make_shared<Amount>(def_.amount);
+    const double metric = std::abs(rest_volume) / stiffest(builder.body(def_.body));
+    add_weight(builder, *pool);
+    if (has_law()) {
+      auto network = chamber_network(builder);
+      ChamberContent content{
+          def_.name, def_.control == CavityControl::gas, def_.polytropic, def_.ambient, rest_volume, amount};
+      const Index chamber = network->add_chamber(std::move(content), *pool, metric);
+      auto instance =
+          std::make_unique<CavityInstance>(def_.name, pool, nullptr, network->row_pool, std::move(amount));
+      instance->network = network;
+      instance->chamber = chamber;
+      return std::unique_ptr<EffectInstance>(std::move(instance));
+    }
     auto row = std::make_shared<CavityRow>(def_.name, def_.control, rest_volume, amount);
     row->stencil_pool = builder.add_stencils(pool);
     row->law = def_.control == CavityControl::pressure ? RowLaw::prescribed : RowLaw::compliant;
-    for (Index f = 0; f < pool->stencils(); ++f) {
-      row->map.item.push_back(f);
-      row->weight.push_back(1);
-    }
-    row->map.offset.push_back(pool->stencils());
-    double mu = 0;
-    for (const RegionData& r : builder.body(def_.body).regions)
-      mu = std::max(mu, r.material->shear_modulus());
-    row->metric.push_back(std::abs(rest_volume) / mu);
-    row->measure.push_back(std::abs(rest_volume));
+    push_row(*row, *pool, metric, std::abs(rest_volume));
     const Index row_pool = builder.add_rows(row);
     return std::unique_ptr<EffectInstance>(
         std::make_unique<CavityInstance>(def_.name, pool, row, row_pool, std::move(amount)));
+  }
+
+  // One row over all faces.
+  static void push_row(RowPool& row, const StencilPool& pool, double metric, double measure) {
+    for (Index f = 0; f < pool.stencils(); ++f) {
+      row.map.item.push_back(f);
+      row.weight.push_back(1);
+    }
+    row.map.offset.push_back(pool.stencils());
+    row.metric.push_back(metric);
+    row.measure.push_back(measure);
+  }
+
+  // The pressure that the liquid's own weight adds, density gravity . (x - datum): minus the gradient of its
+  // potential energy.
+  void add_weight(Builder& builder, const EnclosedVolumePool& surface) const {
+    const double g = std::sqrt(dot(def_.gravity, def_.gravity));
+    if (def_.density == 0 || g == 0) return;
+    const Vec3 datum = def_.datum.value_or(middle(builder, surface));
+    auto moment = std::make_shared<EnclosedVolumePool>(def_.name + "/weight", surface.origin(),
+                                                       (-1 / g) * def_.gravity, datum);
+    moment->add_faces(surface);
+    moment->finish();
+    auto row = std::make_shared<WeightRow>(def_.name + "/weight", def_.density * g, def_.gravity_curve);
+    row->stencil_pool = builder.add_stencils(moment);
+    row->law = RowLaw::prescribed;
+    const double volume = surface.volume(builder.rest()), length = std::cbrt(volume);
+    push_row(*row, *moment, volume * length * length / stiffest(builder.body(def_.body)), volume * length);
+    builder.add_rows(row);
+  }
+
+  // Of the box around the surface.
+  static Vec3 middle(const Builder& builder, const EnclosedVolumePool& surface) {
+    Vec3 lower = builder.rest()[at(surface.nodes().item.front())], upper = lower;
+    for (const Index n : surface.nodes().item) {
+      for (int k = 0; k < 3; ++k) {
+        lower[k] = std::min(lower[k], builder.rest()[at(n)][k]);
+        upper[k] = std::max(upper[k], builder.rest()[at(n)][k]);
+      }
+    }
+    return 0.5 * (lower + upper);
   }
 
   CavityDef def_;

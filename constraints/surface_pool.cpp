@@ -165,6 +165,13 @@ void add_cross(Mat3& block, double s, const Vec3& w) {
   block(2, 1) += s * w.x;
 }
 
+// block += s a b^T
+void add_outer(Mat3& block, double s, const Vec3& a, const Vec3& b) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) block(i, j) += s * a[i] * b[j];
+  }
+}
+
 }  // namespace
 
 void raise_negative_eigenvalues(std::size_t n, Mat3* block) {
@@ -236,13 +243,22 @@ std::vector<std::pair<Index, double>> nodal_areas(std::span<const Index> face, s
   return areas;
 }
 
+void EnclosedVolumePool::add_faces(const EnclosedVolumePool& other) {
+  for (Index f = 0; f < other.stencils(); ++f) {
+    nodes_.push(other.nodes_[f]);
+    rule_.push_back(other.rule_[at(f)]);
+    apex_.push_back(other.apex_[at(f)]);
+    face_origin_.push_back(other.face_origin_[at(f)]);
+  }
+}
+
 double EnclosedVolumePool::face_volume(Index face, std::span<const Vec3> x) const {
   const auto nodes = nodes_[face];
   const FaceRule& r = *rule_[at(face)];
   double volume = 0;
   for (int q = 0; q < r.points; ++q) {
-    const FacePoint p = face_point(r, q, nodes, x, origin_, apex_[at(face)]);
-    volume += r.weight[static_cast<std::size_t>(q)] / 3 * dot(p.x, cross(p.u, p.v));
+    const FacePoint p = face_point(r, q, nodes, x, face_origin_[at(face)], apex_[at(face)]);
+    volume += r.weight[static_cast<std::size_t>(q)] * scale(face, p.x) * dot(p.x, cross(p.u, p.v));
   }
   return volume;
 }
@@ -266,20 +282,31 @@ void EnclosedVolumePool::evaluate(const StencilRequest& request, const StencilSl
     if (block) std::fill_n(block, n * (n + 1) / 2, Mat3{});
     for (std::size_t a = 0; a < n; ++a) slots.jacobian[first + a] = Vec3{};
     for (int q = 0; q < r.points; ++q) {
-      const FacePoint p = face_point(r, q, nodes, request.x, origin_, apex_[at(f)]);
-      const double w = r.weight[static_cast<std::size_t>(q)] / 3;
+      const FacePoint p = face_point(r, q, nodes, request.x, face_origin_[at(f)], apex_[at(f)]);
+      const double weight = r.weight[static_cast<std::size_t>(q)], w = weight * scale(f, p.x);
       const Vec3 uv = cross(p.u, p.v), vx = cross(p.v, p.x), xu = cross(p.x, p.u);
       const double* N = r.N.data() + static_cast<std::size_t>(q) * n;
       const double* U = r.N_u.data() + static_cast<std::size_t>(q) * n;
       const double* V = r.N_v.data() + static_cast<std::size_t>(q) * n;
+      // The slope of the weight: zero but for a first moment.
+      const Vec3 slope = weighted_ ? (weight / 4) * weight_ : Vec3{};
+      const Vec3 slope_term = weighted_ ? dot(p.x, uv) * slope : Vec3{};
+      const auto triple_slope = [&](std::size_t a) { return N[a] * uv + U[a] * vx + V[a] * xu; };
       for (std::size_t a = 0; a < n; ++a) {
-        slots.jacobian[first + a] += w * (N[a] * uv + U[a] * vx + V[a] * xu);
+        slots.jacobian[first + a] += w * triple_slope(a);
+        if (weighted_) slots.jacobian[first + a] += N[a] * slope_term;
         if (!block) continue;
         for (std::size_t b = 0; b < a; ++b) {
           Mat3& h = block[a * (a + 1) / 2 + b];
           add_cross(h, sigma * w * (U[a] * N[b] - N[a] * U[b]), p.v);
           add_cross(h, sigma * w * (N[a] * V[b] - V[a] * N[b]), p.u);
           add_cross(h, sigma * w * (V[a] * U[b] - U[a] * V[b]), p.x);
+        }
+        if (!weighted_) continue;
+        for (std::size_t b = 0; b <= a; ++b) {
+          Mat3& h = block[a * (a + 1) / 2 + b];
+          add_outer(h, sigma * N[a], slope, triple_slope(b));
+          add_outer(h, sigma * N[b], triple_slope(a), slope);
         }
       }
     }

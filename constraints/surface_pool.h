@@ -38,16 +38,25 @@ void raise_negative_eigenvalues(std::size_t nodes, Mat3* block);
 // One function a face: V = 1/3 integral (x - origin) . n da [m^3]. Over a closed surface the sum is the
 // enclosed volume, whatever the origin; its gradient is the pressure load, its Hessian the (symmetric)
 // follower stiffness.
+//
+// With a weight b the functions sum to the first moment of the enclosed volume instead, the integral of
+// b . (x - datum) [b m^4]: over the cone from the origin to a face, that of (b . (origin - datum)) / 3 +
+// b . (x - origin) / 4. Its gradient is that of a pressure b . (x - datum) on the surface.
 class EnclosedVolumePool final : public StencilPool {
  public:
   EnclosedVolumePool(std::string name, Vec3 origin) : name_(std::move(name)), origin_(origin) {}
+  EnclosedVolumePool(std::string name, Vec3 origin, const Vec3& weight, const Vec3& datum)
+      : name_(std::move(name)), origin_(origin), weighted_(true), weight_(weight), datum_(datum) {}
   // Node order gives the normal; `rule` is one of those above and must outlive the pool. `apex` is for rules
   // that have one.
   void add_face(std::span<const Index> nodes, const FaceRule& rule, const Vec3& apex = {}) {
     nodes_.push(nodes);
     rule_.push_back(&rule);
     apex_.push_back(apex);
+    face_origin_.push_back(origin_);
   }
+  // The faces of another surface, measured from its own origin.
+  void add_faces(const EnclosedVolumePool& other);
   void finish() { finish_topology(); }
 
   std::string_view name() const override { return name_; }
@@ -56,13 +65,21 @@ class EnclosedVolumePool final : public StencilPool {
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
 
   double volume(std::span<const Vec3> x) const;
+  const Vec3& origin() const { return origin_; }
 
  private:
   double face_volume(Index face, std::span<const Vec3> x) const;
+  // What the triple product of a quadrature point counts, at a position relative to the face's origin.
+  double scale(Index face, const Vec3& r) const {
+    if (!weighted_) return 1.0 / 3;
+    return dot(weight_, face_origin_[at(face)] - datum_) / 3 + dot(weight_, r) / 4;
+  }
   std::string name_;
   Vec3 origin_;
   std::vector<const FaceRule*> rule_;
-  std::vector<Vec3> apex_;
+  std::vector<Vec3> apex_, face_origin_;
+  bool weighted_ = false;
+  Vec3 weight_{}, datum_{};
 };
 
 }  // namespace isochor

@@ -1,6 +1,7 @@
 // What an effect sees while a scene is compiled, and what it must provide. Extension header.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -159,6 +160,14 @@ class Builder {
   // What each effect holds; directions that depend on earlier ones belong to the earlier effect.
   std::vector<std::vector<HeldDirection>> held_directions(std::size_t effects) const;
   void set_owner(Index effect) { owner_ = effect; }
+  // What effects share while they are built, made by the first that asks: chambers that are connected live in
+  // one pool.
+  template <class T>
+  std::shared_ptr<T> shared(const std::string& key) {
+    auto& slot = shared_[key];
+    if (!slot) slot = std::make_shared<T>();
+    return std::static_pointer_cast<T>(slot);
+  }
   void warn(std::string text) { warnings_.push_back(std::move(text)); }
 
   // Merges supports, checks the scene and hands the parts over.
@@ -181,6 +190,7 @@ class Builder {
   friend class SupportPrescriber;
   std::vector<std::vector<Given>> given_;
   std::vector<std::string> warnings_;
+  std::map<std::string, std::shared_ptr<void>> shared_;
   Index owner_ = -1;  // effect being built
 };
 

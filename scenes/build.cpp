@@ -25,6 +25,11 @@ SchemePtr make_scheme(const AnalysisDef& a) {
   return nullptr;
 }
 
+std::string in_folder(const SceneDef& scene, const std::string& file) {
+  const std::filesystem::path path(file);
+  return (path.is_relative() ? std::filesystem::path(scene.folder) / path : path).lexically_normal().string();
+}
+
 Result<Mesh> make_mesh(const SceneBody& body, const std::string& folder) {
   if (const auto* box = std::get_if<BoxMeshDef>(&body.mesh)) return box_mesh(*box);
   const auto& file = std::get<MeshFile>(body.mesh);
@@ -84,13 +89,33 @@ Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, Bui
   for (const VolumeRows& rows : volume_rows(scene)) {
     if (!rows.none) add(volume(rows.def));
   }
-  for (const auto& def : scene.dirichlet) built.dirichlet.push_back(add(dirichlet(def)));
+  for (std::size_t d = 0; d < scene.dirichlet.size(); ++d) {
+    DirichletDef def = scene.dirichlet[d];
+    if (def.bone.keys.empty() && !def.bone.file.empty()) {
+      auto track = read_poses(in_folder(scene, def.bone.file));
+      if (!track) return Error{place("dirichlet", d) + ".bone: " + track.error()};
+      def.bone = std::move(track).value();
+    }
+    built.dirichlet.push_back(add(dirichlet(def)));
+  }
   for (const auto& def : scene.tractions) built.tractions.push_back(add(traction(def)));
   for (const auto& def : scene.damping) add(damping(def));
   for (const auto& def : scene.epidermis) add(epidermis(def));
   for (const auto& def : scene.membranes) add(membrane(def));
   for (const auto& def : scene.forces) built.forces.push_back(add(point_force(def)));
-  for (const auto& def : scene.cavities) built.cavities.push_back(add(cavity(def)));
+  for (CavityDef def : scene.cavities) {
+    // The liquid feels the gravity of the scene.
+    if (def.density > 0 && def.gravity == Vec3{}) {
+      def.gravity = scene.gravity;
+      def.gravity_curve = scene.gravity_amount;
+    }
+    built.cavities.push_back(add(cavity(def)));
+  }
+  for (const auto& def : scene.valves) built.valves.push_back(add(valve(def)));
+  for (const auto& def : scene.cables) built.cables.push_back(add(cable(def)));
+  for (const auto& def : scene.windings) add(winding(def));
+  for (const auto& def : scene.layers) add(strain_limit(def));
+  for (const auto& def : scene.ties) add(tie(def));
   if (!error.empty()) return Error{error};
   return {};
 }
@@ -112,7 +137,7 @@ Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
   world_options.gravity_curve = scene.gravity_amount;
   auto world = World::create(std::move(world_options));
   if (!world) return Error{world.error()};
-  BuiltScene built{std::move(world).value(), {}, {}, {}, {}, {}};
+  BuiltScene built{std::move(world).value(), {}, {}, {}, {}, {}, {}, {}};
   if (auto r = add_bodies(scene, options, built); !r) return Error{r.error()};
   if (auto r = add_effects(scene, options, built); !r) return Error{r.error()};
   if (auto r = built.world.compile(); !r) return Error{r.error()};

@@ -73,6 +73,11 @@ Result<void> check_all_names(const SceneDef& s) {
   if (auto r = check_names("tractions", s.tractions, plain, seen); !r) return r;
   if (auto r = check_names("epidermis", s.epidermis, plain, seen); !r) return r;
   if (auto r = check_names("membranes", s.membranes, plain, seen); !r) return r;
+  if (auto r = check_names("ties", s.ties, plain, seen); !r) return r;
+  if (auto r = check_names("cables", s.cables, plain, seen); !r) return r;
+  if (auto r = check_names("windings", s.windings, plain, seen); !r) return r;
+  if (auto r = check_names("layers", s.layers, plain, seen); !r) return r;
+  if (auto r = check_names("valves", s.valves, plain, seen); !r) return r;
   return check_names("forces", s.forces, plain, seen);
 }
 
@@ -104,6 +109,8 @@ Result<void> check_all_curves(const SceneDef& s) {
   if (auto r = check_curves("dirichlet", s.dirichlet); !r) return r;
   if (auto r = check_curves("cavities", s.cavities); !r) return r;
   if (auto r = check_curves("tractions", s.tractions); !r) return r;
+  if (auto r = check_curves("cables", s.cables); !r) return r;
+  if (auto r = check_curves("valves", s.valves); !r) return r;
   return check_curves("forces", s.forces);
 }
 
@@ -159,6 +166,9 @@ Result<void> check_metric(const SceneDef& s, const MetricDef& m, const std::stri
     case Quantity::cavity_pressure:
     case Quantity::cavity_volume:
       return require(where, "cavity", s.cavities, m.of);
+    case Quantity::cable_tension:
+    case Quantity::cable_length:
+      return require(where, "cable", s.cables, m.of);
     case Quantity::reaction_force:
     case Quantity::reaction_moment:
       return require(where, "dirichlet support", s.dirichlet, m.of);

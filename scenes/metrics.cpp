@@ -18,6 +18,12 @@ double component(const Vec3& v, Component c) {
   return v[static_cast<int>(c) - static_cast<int>(Component::x)];
 }
 
+double gauge(const StepRecord& r, const std::string& effect, const char* quantity) {
+  const auto it = std::find_if(r.gauges.begin(), r.gauges.end(),
+                               [&](const Gauge& g) { return g.effect == effect && g.quantity == quantity; });
+  return it == r.gauges.end() ? std::nan("") : it->value;
+}
+
 double quantity(const SceneDef& scene, const MetricDef& m, const std::vector<StepRecord>& records,
                 const StepRecord& r) {
   switch (m.quantity) {
@@ -27,6 +33,10 @@ double quantity(const SceneDef& scene, const MetricDef& m, const std::vector<Ste
       return r.cavities[place_of(scene.cavities, m.of)].pressure;
     case Quantity::cavity_volume:
       return r.cavities[place_of(scene.cavities, m.of)].volume;
+    case Quantity::cable_tension:
+      return gauge(r, m.of, "tension");
+    case Quantity::cable_length:
+      return gauge(r, m.of, "length");
     case Quantity::reaction_force:
       return component(r.reactions[place_of(scene.dirichlet, m.of)].force, m.component);
     case Quantity::reaction_moment:

@@ -40,6 +40,11 @@ std::string table_header(const RunResult& r) {
       for (const char* axis : {"x", "y", "z"}) line += "," + s + "." + part + "_" + axis;
     }
   }
+  if (!r.records.empty()) {
+    for (const Gauge& g : r.records.front().gauges) {
+      line += "," + g.effect + "." + g.quantity + (g.unit == "1" ? "" : "_" + g.unit);
+    }
+  }
   return line + "\n";
 }
 
@@ -58,6 +63,7 @@ std::string table_row(const StepRecord& r) {
     add(s.force);
     add(s.moment);
   }
+  for (const Gauge& g : r.gauges) line += "," + number(g.value);
   return line + "\n";
 }
 

@@ -112,8 +112,10 @@ void Run::record(int step, const StepReport& report) {
   }
   r.cavities.resize(scene_.cavities.size());
   for (const Gauge& g : world.gauges()) {
+    const bool of_chamber = g.kind == "cavity" && (g.quantity == "pressure" || g.quantity == "volume");
+    if (!of_chamber) r.gauges.push_back(g);
     for (std::size_t c = 0; c < scene_.cavities.size(); ++c) {
-      if (g.kind != "cavity" || g.effect != scene_.cavities[c].name) continue;
+      if (!of_chamber || g.effect != scene_.cavities[c].name) continue;
       (g.quantity == "pressure" ? r.cavities[c].pressure : r.cavities[c].volume) = g.value;
     }
   }

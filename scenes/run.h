@@ -32,6 +32,7 @@ struct StepRecord {
   std::vector<Vec3> probes;                       // displacement of each probe [m]
   std::vector<CavityState> cavities;
   std::vector<Reaction> reactions;  // of each dirichlet support
+  std::vector<Gauge> gauges;        // what else effects report, in the same order at every step
 };
 
 enum class RunStatus : std::uint8_t {

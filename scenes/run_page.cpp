@@ -73,6 +73,11 @@ std::vector<PageSeries> all_series(const RunView& view) {
     out.push_back(series(r, "Chambers", r.cavities[c] + " volume", "m\u00b3",
                          [c](const StepRecord& s) { return s.cavities[c].volume; }));
   }
+  for (std::size_t i = 0; !r.records.empty() && i < r.records.front().gauges.size(); ++i) {
+    const Gauge& g = r.records.front().gauges[i];
+    out.push_back(series(r, "Gauges", g.effect + " " + g.quantity, g.unit.c_str(),
+                         [i](const StepRecord& s) { return s.gauges[i].value; }));
+  }
   for (std::size_t p = 0; p < r.probes.size(); ++p) {
     for (int k = 0; k < 3; ++k) {
       out.push_back(series(r, "Probes", r.probes[p] + " " + "xyz"[k], "m",

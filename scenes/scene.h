@@ -106,6 +106,8 @@ enum class Quantity : std::uint8_t {
   displacement,     // of a probe [m]
   cavity_pressure,  // [Pa]
   cavity_volume,    // [m^3]
+  cable_tension,    // [N]
+  cable_length,     // [m]
   reaction_force,   // of a support [N]
   reaction_moment,  // of a support, about the origin [N m]
   volume_error,
@@ -147,6 +149,12 @@ struct SceneDef {
   std::vector<DampingDef> damping;
   std::vector<EpidermisDef> epidermis;
   std::vector<MembraneDef> membranes;
+  // Bones of supports are read from PoseTrack::file when they have no keyframes.
+  std::vector<TieDef> ties;
+  std::vector<CableDef> cables;
+  std::vector<WindingDef> windings;
+  std::vector<StrainLimitDef> layers;
+  std::vector<ValveDef> valves;
   Vec3 gravity{};                             // [m/s^2]
   Curve gravity_amount = Curve::constant(1);  // scales it over time
   AnalysisDef analysis;
@@ -169,7 +177,7 @@ Result<void> check_scene(const SceneDef& scene);
 struct BuiltScene {
   World world;
   std::vector<BodyId> bodies;
-  std::vector<EffectId> dirichlet, cavities, tractions, forces;
+  std::vector<EffectId> dirichlet, cavities, tractions, forces, cables, valves;
 };
 
 // What build() hands to the world.

@@ -2,6 +2,7 @@
 // there.
 #pragma once
 
+#include "isochor/poses.h"
 #include "isochor/world.h"
 
 namespace isochor {
@@ -91,7 +92,14 @@ EffectPtr membrane(MembraneDef def);
 // ---- supports
 // ----------------------------------------------------------------------------------------------------
 
-// Prescribed positions, eliminated from the unknowns; reactions are reported.
+// How prescribed positions enter the system.
+enum class SupportTreatment : std::uint8_t {
+  eliminated,  // no unknowns; exact, reactions are reported
+  multiplier,  // hard rows, the reactions are unknowns: for points inside elements, and beside other supports
+  stiffness,   // compliant rows: springs to the prescribed positions, the soft attachment to a bone
+};
+
+// Prescribed positions, by default eliminated from the unknowns; reactions are reported.
 struct DirichletDef {
   std::string name = "fixed";
   Selection where;
@@ -101,10 +109,76 @@ struct DirichletDef {
   Vec3 displacement{};
   Vec3 axis_point{}, axis{};
   double angle = 0;
-  // Scales displacement and angle over time.
+  // Instead of displacement and angle: the nodes move with this bone.
+  PoseTrack bone;
+  // Scales displacement and angle over time; a bone has its own times.
   Curve amount = Curve::constant(1);
+  SupportTreatment treatment = SupportTreatment::eliminated;
+  // Of treatment `stiffness`: of all springs together, along each direction [N/m].
+  double stiffness = 0;
+  // Points anywhere in the body, held like nodes; not with treatment `eliminated`. With points the selection
+  // may be empty.
+  std::vector<Vec3> points;
 };
 EffectPtr dirichlet(DirichletDef def);
+
+// Holds nodes of one body to the material points of another (or the same) that they lie on at rest.
+struct TieDef {
+  std::string name = "tie";
+  Selection where;       // nodes that are attached
+  BodyId to{};           // the body that holds the points
+  double stiffness = 0;  // of all springs together [N/m]; 0: hard
+};
+EffectPtr tie(TieDef def);
+
+// ---- cables and fibers
+// -------------------------------------------------------------------------------------------------
+
+enum class CableControl : std::uint8_t {
+  tension,       // amount: tension [N]; below zero counts as zero
+  length,        // amount: length [m]
+  length_ratio,  // amount: length over rest length
+};
+
+// A cable that runs straight between points of a body and slides through them without friction: one tension
+// along all of it. It pulls and never pushes; slack, it carries nothing.
+struct CableDef {
+  std::string name = "cable";
+  BodyId body{};
+  std::vector<Vec3> points;  // rest positions in or on the body [m], in order
+  // Fixed points outside the body where the cable comes from and goes to (a motor, a wall).
+  std::optional<Vec3> from, to;
+  CableControl control = CableControl::length_ratio;
+  Curve amount = Curve::constant(1);
+  double stiffness = 0;  // of the whole cable under length control [N/m]; 0: inextensible
+};
+EffectPtr cable(CableDef def);
+
+// Threads that are bonded to the body along paths: every segment between two points has its own tension.
+struct WindingDef {
+  std::string name = "winding";
+  BodyId body{};
+  std::vector<std::vector<Vec3>> paths;  // rest positions in or on the body [m]
+  double stiffness = 0;                  // tension over strain, E A [N]; 0: inextensible
+  double slack = 0;                      // strain up to which a segment carries nothing
+  bool pulls_only = true;                // false: it resists shortening too
+};
+EffectPtr winding(WindingDef def);
+
+// Points of a helix about the axis from `start` to `end`; without turns between them, of a straight line.
+// `out` is where the first point lies from the axis; its length is the radius. Negative turns: left-handed.
+std::vector<Vec3> helix(const Vec3& start, const Vec3& end, const Vec3& out, double turns, int points);
+
+// A thin layer on a surface, fabric or paper, that resists stretching: one thread along every edge.
+struct StrainLimitDef {
+  std::string name = "layer";
+  BodyId body{};
+  std::vector<std::string> surfaces;
+  double stiffness = 0;    // Young's modulus times thickness [N/m]
+  double slack = 0;        // strain up to which it carries nothing
+  bool pulls_only = true;  // false: it resists shortening too
+};
+EffectPtr strain_limit(StrainLimitDef def);
 
 // ---- loads
 // -------------------------------------------------------------------------------------------------------
@@ -149,6 +223,8 @@ enum class CavityControl : std::uint8_t {
   pressure,      // amount: gauge pressure [Pa], positive inflates; follows the surface
   volume,        // amount: volume [m^3]; the pressure is the multiplier
   volume_ratio,  // amount: volume over rest volume
+  gas,           // amount: gas supplied so far, over what fills the chamber at rest and ambient pressure
+  liquid,        // amount: liquid supplied so far, over the rest volume
 };
 
 struct CavityDef {
@@ -157,11 +233,31 @@ struct CavityDef {
   std::vector<std::string> surfaces;  // faces that bound the cavity; their winding does not matter
   CavityControl control = CavityControl::pressure;
   Curve amount = Curve::ramp(0);
+  // Of control `gas`: p V^n stays the same for a given mass, p the absolute pressure. 1: isothermal.
+  double polytropic = 1;
+  double ambient = 101325;  // absolute pressure outside [Pa]
+  // Weight of a liquid that fills it: the pressure grows with depth, and is reported for the height of
+  // `datum`, by default the middle of the bounding surface at rest.
+  double density = 0;  // [kg/m^3]; 0: weightless
+  Vec3 gravity{};      // [m/s^2], of the liquid
+  Curve gravity_curve = Curve::constant(1);
+  std::optional<Vec3> datum;
   // Openings are closed by virtual caps: flat fans over each boundary loop of the surface. A loop that is not
   // wholly on a support is refused unless this is set, since nothing real would hold the pressure there.
   // Supports must be added before the cavity.
   bool cap_free_openings = false;
 };
 EffectPtr cavity(CavityDef def);
+
+// A valve between two chambers of control `gas` (of one polytropic exponent and ambient pressure) or
+// `liquid`, or a leak to the outside. Volume flow, for gas measured at ambient pressure: conductance times
+// opening times the difference of pressures; in statics per unit of the load factor.
+struct ValveDef {
+  std::string name = "valve";
+  std::string from, to;               // names of cavities that were added before; `to` empty: outside
+  double conductance = 0;             // [m^3/(s Pa)]
+  Curve amount = Curve::constant(1);  // opening, 0: shut
+};
+EffectPtr valve(ValveDef def);
 
 }  // namespace isochor

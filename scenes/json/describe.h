@@ -147,6 +147,10 @@ void describe(Io& io, DirichletDef& d) {
   io.vector("displacement", d.displacement, Vec3{});
   Rotation rotation{d};
   io.optional_object("rotation", rotation, d.angle != 0);
+  io.text("bone", d.bone.file);
+  io.word("treatment", d.treatment, SupportTreatment::eliminated);
+  io.number("stiffness", d.stiffness, 0.0);
+  io.points("points", d.points);
   const bool moves = d.angle != 0 || !(d.displacement == Vec3{});
   io.curve("amount", d.amount, CurveStart::zero, moves);
 }
@@ -157,9 +161,63 @@ void describe(Io& io, CavityDef& c) {
   io.body("body", c.body);
   io.names("surfaces", c.surfaces);
   io.word("control", c.control, CavityControl::pressure);
+  constexpr CurveStart kStart[] = {CurveStart::zero, CurveStart::constant, CurveStart::one, CurveStart::one,
+                                   CurveStart::one};
+  io.required_curve("amount", c.amount, kStart[static_cast<std::size_t>(c.control)]);
+  io.number("polytropic", c.polytropic, 1.0);
+  io.number("ambient", c.ambient, 101325.0);
+  io.number("density", c.density, 0.0);
+  io.flag("cap_free_openings", c.cap_free_openings, false);
+}
+
+template <class Io>
+void describe(Io& io, ValveDef& v) {
+  io.required_text("name", v.name);
+  io.required_text("from", v.from);
+  io.text("to", v.to);
+  io.number("conductance", v.conductance, 0.0);
+  io.curve("amount", v.amount, CurveStart::constant, true);
+}
+
+template <class Io>
+void describe(Io& io, CableDef& c) {
+  io.required_text("name", c.name);
+  io.body("body", c.body);
+  io.points("points", c.points);
+  io.optional_vector("from", c.from);
+  io.optional_vector("to", c.to);
+  io.word("control", c.control, CableControl::length_ratio);
   constexpr CurveStart kStart[] = {CurveStart::zero, CurveStart::constant, CurveStart::one};
   io.required_curve("amount", c.amount, kStart[static_cast<std::size_t>(c.control)]);
-  io.flag("cap_free_openings", c.cap_free_openings, false);
+  io.number("stiffness", c.stiffness, 0.0);
+}
+
+template <class Io>
+void describe(Io& io, WindingDef& w) {
+  io.required_text("name", w.name);
+  io.body("body", w.body);
+  io.paths("paths", w.paths);
+  io.number("stiffness", w.stiffness, 0.0);
+  io.number("slack", w.slack, 0.0);
+  io.flag("pulls_only", w.pulls_only, true);
+}
+
+template <class Io>
+void describe(Io& io, StrainLimitDef& l) {
+  io.required_text("name", l.name);
+  io.body("body", l.body);
+  io.names("surfaces", l.surfaces);
+  io.number("stiffness", l.stiffness, 0.0);
+  io.number("slack", l.slack, 0.0);
+  io.flag("pulls_only", l.pulls_only, true);
+}
+
+template <class Io>
+void describe(Io& io, TieDef& t) {
+  io.required_text("name", t.name);
+  io.object("where", t.where);
+  io.body("to", t.to);
+  io.number("stiffness", t.stiffness, 0.0);
 }
 
 template <class Io>
@@ -273,6 +331,11 @@ void describe(Io& io, SceneDef& s) {
   io.list("damping", s.damping);
   io.list("epidermis", s.epidermis);
   io.list("membranes", s.membranes);
+  io.list("ties", s.ties);
+  io.list("cables", s.cables);
+  io.list("windings", s.windings);
+  io.list("layers", s.layers);
+  io.list("valves", s.valves);
   io.vector("gravity", s.gravity, Vec3{});
   io.curve("gravity_amount", s.gravity_amount, CurveStart::zero, !(s.gravity == Vec3{}));
   io.list("probes", s.probes);

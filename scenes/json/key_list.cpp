@@ -21,6 +21,8 @@ class KeyList {
   void flag(const char* key, bool&, bool) { add(key, "flag"); }
   void vector(const char* key, Vec3&, const Vec3&) { add(key, "vector"); }
   void required_vector(const char* key, Vec3&) { add(key, "vector"); }
+  void optional_vector(const char* key, std::optional<Vec3>&) { add(key, "vector"); }
+  void paths(const char* key, std::vector<std::vector<Vec3>>&) { add(key, "paths"); }
   void integers(const char* key, std::array<int, 3>&) { add(key, "integers"); }
   void names(const char* key, std::vector<std::string>&) { add(key, "names"); }
   void indices(const char* key, std::vector<Index>&) { add(key, "indices"); }

@@ -37,17 +37,23 @@ ISOCHOR_WORDS(VolumeStrainKind, 2, {VolumeStrainKind::linear, "linear"},
               {VolumeStrainKind::logarithmic, "logarithmic"});
 ISOCHOR_WORDS(RowTreatment, 4, {RowTreatment::automatic, "automatic"}, {RowTreatment::saddle, "saddle"},
               {RowTreatment::condensed, "condensed"}, {RowTreatment::bordered, "bordered"});
-ISOCHOR_WORDS(CavityControl, 3, {CavityControl::pressure, "pressure"}, {CavityControl::volume, "volume"},
-              {CavityControl::volume_ratio, "volume_ratio"});
 ISOCHOR_WORDS(SchemeWord, 4, {SchemeWord::implicit_euler, "implicit_euler"}, {SchemeWord::bdf2, "bdf2"},
               {SchemeWord::generalized_alpha, "generalized_alpha"}, {SchemeWord::newmark, "newmark"});
+ISOCHOR_WORDS(CavityControl, 5, {CavityControl::pressure, "pressure"}, {CavityControl::volume, "volume"},
+              {CavityControl::volume_ratio, "volume_ratio"}, {CavityControl::gas, "gas"},
+              {CavityControl::liquid, "liquid"});
+ISOCHOR_WORDS(SupportTreatment, 3, {SupportTreatment::eliminated, "eliminated"},
+              {SupportTreatment::multiplier, "multiplier"}, {SupportTreatment::stiffness, "stiffness"});
+ISOCHOR_WORDS(CableControl, 3, {CableControl::tension, "tension"}, {CableControl::length, "length"},
+              {CableControl::length_ratio, "length_ratio"});
 ISOCHOR_WORDS(AnalysisType, 2, {AnalysisType::statics, "static"}, {AnalysisType::dynamics, "dynamic"});
 ISOCHOR_WORDS(Solver, 4, {Solver::automatic, "automatic"}, {Solver::mumps, "mumps"},
               {Solver::cholmod, "cholmod"}, {Solver::eigen, "eigen"});
 ISOCHOR_WORDS(Component, 4, {Component::magnitude, "magnitude"}, {Component::x, "x"}, {Component::y, "y"},
               {Component::z, "z"});
-ISOCHOR_WORDS(Quantity, 12, {Quantity::displacement, "displacement"},
+ISOCHOR_WORDS(Quantity, 14, {Quantity::displacement, "displacement"},
               {Quantity::cavity_pressure, "cavity_pressure"}, {Quantity::cavity_volume, "cavity_volume"},
+              {Quantity::cable_tension, "cable_tension"}, {Quantity::cable_length, "cable_length"},
               {Quantity::reaction_force, "reaction_force"}, {Quantity::reaction_moment, "reaction_moment"},
               {Quantity::volume_error, "volume_error"},
               {Quantity::constitutive_residual, "constitutive_residual"}, {Quantity::min_J, "min_J"},

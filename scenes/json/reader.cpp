@@ -207,6 +207,23 @@ void Reader::indices(const char* key, std::vector<Index>& value) {
   }
 }
 
+void Reader::optional_vector(const char* key, std::optional<Vec3>& value) {
+  if (const Json* j = find(key)) read_vector(*j, at(key), value.emplace());
+}
+
+void Reader::paths(const char* key, std::vector<std::vector<Vec3>>& value) {
+  const Json* j = find(key);
+  if (!j || !expect_list(*j, key)) return;
+  for (std::size_t i = 0; i < j->size(); ++i) {
+    const std::string place = at(key) + "[" + std::to_string(i) + "]";
+    if (!(*j)[i].is_array()) return fail_type(place, "a list of points", (*j)[i]);
+    auto& path = value.emplace_back();
+    for (std::size_t k = 0; k < (*j)[i].size(); ++k) {
+      if (!read_vector((*j)[i][k], place + "[" + std::to_string(k) + "]", path.emplace_back())) return;
+    }
+  }
+}
+
 void Reader::points(const char* key, std::vector<Vec3>& value) {
   const Json* j = find(key);
   if (!j || !expect_list(*j, key)) return;

@@ -44,6 +44,8 @@ class Reader {
   void flag(const char* key, bool& value, bool standard);
   void vector(const char* key, Vec3& value, const Vec3& standard);
   void required_vector(const char* key, Vec3& value);
+  void optional_vector(const char* key, std::optional<Vec3>& value);
+  void paths(const char* key, std::vector<std::vector<Vec3>>& value);
   void integers(const char* key, std::array<int, 3>& value);
   void names(const char* key, std::vector<std::string>& value);  // a list, or one name
   void indices(const char* key, std::vector<Index>& value);

@@ -48,6 +48,10 @@ void add_state(Json& j, const RunResult& r) {
     j["cavities"][r.cavities[c]] = {{"pressure_Pa", end.cavities[c].pressure},
                                     {"volume_m3", end.cavities[c].volume}};
   }
+  j["gauges"] = Json::object();
+  for (const Gauge& g : end.gauges) {
+    j["gauges"][g.effect][g.quantity + (g.unit == "1" ? "" : "_" + g.unit)] = g.value;
+  }
   for (std::size_t s = 0; s < r.supports.size(); ++s) {
     j["reactions"][r.supports[s]] = {{"force_N", list_of(end.reactions[s].force)},
                                      {"moment_Nm", list_of(end.reactions[s].moment)}};

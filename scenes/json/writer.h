@@ -37,6 +37,18 @@ class Writer {
     if (!(value == standard)) json_[key] = list_of(value);
   }
   void required_vector(const char* key, const Vec3& value) { json_[key] = list_of(value); }
+  void optional_vector(const char* key, const std::optional<Vec3>& value) {
+    if (value) json_[key] = list_of(*value);
+  }
+  void paths(const char* key, const std::vector<std::vector<Vec3>>& value) {
+    if (value.empty()) return;
+    json_[key] = Json::array();
+    for (const auto& path : value) {
+      Json points = Json::array();
+      for (const Vec3& p : path) points.push_back(list_of(p));
+      json_[key].push_back(std::move(points));
+    }
+  }
   void integers(const char* key, const std::array<int, 3>& value) { json_[key] = value; }
   void names(const char* key, const std::vector<std::string>& value) {
     if (!value.empty()) json_[key] = value;

@@ -53,7 +53,11 @@ struct SceneCase {
   bool stress_free = true;      // no force and zero rows at rest with zero multipliers
   bool rigid_invariant = true;  // the potential does not see rigid motions
   bool numbered_cells = false;  // has a field by cell number: renumbering cells makes another scene
+  // Further bodies beside the first, of its element and materials.
+  std::vector<isochor::Mesh> more_bodies = {};
 };
 std::vector<SceneCase> scene_cases();
+// Of the scene cases: what attaches, pulls and fills bodies (registry_attachments.cpp).
+void add_attachments(std::vector<SceneCase>& out);
 
 }  // namespace test

@@ -243,6 +243,7 @@ std::vector<SceneCase> scene_cases() {
   add_damping(out);
   add_fields(out);
   add_skins(out);
+  add_attachments(out);
   return out;
 }
 

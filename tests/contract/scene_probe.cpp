@@ -14,7 +14,13 @@ SceneProbe::SceneProbe(const SceneCase& c) {
   body.mesh = c.mesh;
   body.element = c.element;
   body.materials = c.materials;
-  compiled_ = compile({body}, c.effects);
+  std::vector<BodyDef> bodies = {body};
+  for (const Mesh& mesh : c.more_bodies) {
+    bodies.push_back(body);
+    bodies.back().name += " " + std::to_string(bodies.size());
+    bodies.back().mesh = mesh;
+  }
+  compiled_ = compile(bodies, c.effects);
   if (!compiled_.system) throw std::runtime_error(c.name + ": " + compiled_.error);
   x_ = rest();
   std::mt19937 random(23);

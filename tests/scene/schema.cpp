@@ -23,7 +23,7 @@ std::string words_of(const Json& list) {
 // The parser's name for what a schema allows.
 std::string kind_of(const Json& schema, const std::string& reference) {
   if (schema.contains("enum")) return words_of(schema["enum"]);
-  for (const char* kind : {"vector", "names", "curve", "directions"}) {
+  for (const char* kind : {"vector", "names", "curve", "directions", "paths"}) {
     if (reference == kind) return kind;
   }
   if (reference == "number_or_inf") return "number or inf";

@@ -1,0 +1,91 @@
+#include "constraints/embedding.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+
+namespace isochor {
+
+namespace {
+
+std::array<double, 4> barycentric(std::span<const Vec3> rest, const Index* cell, const Vec3& point) {
+  const Vec3& o = rest[at(cell[0])];
+  const Vec3 a = rest[at(cell[1])] - o, b = rest[at(cell[2])] - o, c = rest[at(cell[3])] - o, p = point - o;
+  const double volume = dot(a, cross(b, c));
+  const double u = dot(p, cross(b, c)) / volume, v = dot(a, cross(p, c)) / volume,
+               w = dot(a, cross(b, p)) / volume;
+  return {1 - u - v - w, u, v, w};
+}
+
+EmbeddedPoint sorted(const std::map<Index, double>& terms) {
+  EmbeddedPoint p;
+  for (const auto& [node, weight] : terms) {
+    if (weight == 0) continue;
+    p.nodes.push_back(node);
+    p.weight.push_back(weight);
+  }
+  return p;
+}
+
+}  // namespace
+
+Vec3 EmbeddedPoint::at(std::span<const Vec3> x) const {
+  Vec3 sum{};
+  for (std::size_t a = 0; a < nodes.size(); ++a) sum += weight[a] * x[isochor::at(nodes[a])];
+  return sum;
+}
+
+Result<EmbeddedPoint> embed(const BodyData& body, std::span<const Vec3> rest, const Vec3& point,
+                            const std::string& who) {
+  const auto per = static_cast<std::size_t>(nodes_per_cell(body.mesh.cell_type));
+  if (per != 4 && per != 10) {
+    return Error{who + ": points can be embedded in tetrahedra only; body \"" + body.name +
+                 "\" has other cells"};
+  }
+  double inside = -std::numeric_limits<double>::infinity();
+  const Index* cell = nullptr;
+  std::array<double, 4> l{};
+  // A point on a face lies in two cells: only the nodes of the face weigh, so either will do.
+  for (std::size_t c = 0; c + per <= body.global_cells.size(); c += per) {
+    const auto trial = barycentric(rest, body.global_cells.data() + c, point);
+    const double least = *std::min_element(trial.begin(), trial.end());
+    if (!(least > inside)) continue;
+    inside = least;
+    cell = body.global_cells.data() + c;
+    l = trial;
+  }
+  if (!cell || inside < -1) {
+    return Error{who + ": the point (" + std::to_string(point.x) + ", " + std::to_string(point.y) + ", " +
+                 std::to_string(point.z) + ") is not in body \"" + body.name +
+                 "\"; give points in or on the body, in meters"};
+  }
+  // Rounding at a face or a node would only widen the stencil.
+  for (double& v : l) {
+    if (std::abs(v) < 1e-12) v = 0;
+  }
+  std::map<Index, double> terms;
+  if (per == 4) {
+    for (std::size_t i = 0; i < 4; ++i) terms[cell[i]] = l[i];
+    return sorted(terms);
+  }
+  constexpr std::size_t kEdges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+  for (std::size_t i = 0; i < 4; ++i) terms[cell[i]] = l[i] * (2 * l[i] - 1);
+  for (std::size_t e = 0; e < 6; ++e) terms[cell[4 + e]] = 4 * l[kEdges[e][0]] * l[kEdges[e][1]];
+  return sorted(terms);
+}
+
+EmbeddedPoint difference(const EmbeddedPoint& first, const EmbeddedPoint& second) {
+  std::map<Index, double> terms;
+  for (std::size_t a = 0; a < second.nodes.size(); ++a) terms[second.nodes[a]] += second.weight[a];
+  for (std::size_t a = 0; a < first.nodes.size(); ++a) terms[first.nodes[a]] -= first.weight[a];
+  return sorted(terms);
+}
+
+double stiffest(const BodyData& body) {
+  double mu = 0;
+  for (const RegionData& r : body.regions) mu = std::max(mu, r.material->shear_modulus());
+  return mu;
+}
+
+}  // namespace isochor

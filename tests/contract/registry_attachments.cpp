@@ -1,0 +1,141 @@
+// Supports by rows, ties, cables, threads, chambers with content.
+#include "contract/registry.h"
+#include "support/meshes.h"
+
+namespace test {
+
+namespace {
+
+using namespace isochor;
+
+MaterialPtr soft() {
+  ElasticConstants c;
+  c.young = 2.6;
+  c.poisson = 0.3;
+  return std::move(neo_hookean(c)).value();
+}
+
+SceneCase on_block(const std::string& name, Element element, std::vector<std::string> covers,
+                   EffectPtr effect) {
+  const CellType type = element == Element::tet10 ? CellType::tet10 : CellType::tet4;
+  return {name,    std::move(covers),    mapped(box({2, 1, 2}, {1, 0.5, 1}, type), wavy),
+          element, {{"", soft(), 1000}}, {std::move(effect)}};
+}
+
+DirichletDef rows_def(SupportTreatment treatment) {
+  DirichletDef def;
+  def.name = treatment == SupportTreatment::multiplier ? "by multipliers" : "by springs";
+  def.where.surfaces = {"x0"};
+  def.directions = {{1, 0.2, 0}, {0, 0.3, 1}};
+  def.points = {{0.71, 0.22, 0.43}};
+  def.treatment = treatment;
+  def.stiffness = treatment == SupportTreatment::stiffness ? 3 : 0;
+  def.bone.keys = {{0, {0, 0, 0}, {1, 0, 0, 0}}, {1, {0.1, 0, 0.05}, {0.8, 0, 0.6, 0}}};
+  return def;
+}
+
+void add_held(std::vector<SceneCase>& out, Element element) {
+  for (const auto treatment : {SupportTreatment::multiplier, SupportTreatment::stiffness}) {
+    SceneCase c = on_block(
+        "support by rows, treatment " + std::to_string(static_cast<int>(treatment)), element,
+        {"constraints/dirichlet", "constraints/point_pool", "constraints/embedding", "constraints/poses"},
+        dirichlet(rows_def(treatment)));
+    c.rigid_invariant = false;  // compared with places in space
+    out.push_back(c);
+  }
+  DirichletDef bone = rows_def(SupportTreatment::eliminated);
+  bone.points.clear();
+  out.push_back(on_block("support on a bone", element, {"constraints/dirichlet", "constraints/poses"},
+                         dirichlet(bone)));
+  for (const double stiffness : {0.0, 5.0}) {
+    TieDef def;
+    def.where.surfaces = {"x1"};
+    def.to = BodyId{1};
+    def.stiffness = stiffness;
+    SceneCase c = on_block("tie, stiffness " + std::to_string(stiffness), element,
+                           {"constraints/tie", "constraints/point_pool", "constraints/embedding"}, tie(def));
+    c.more_bodies = {mapped(c.mesh, [](const Vec3& p) { return p + Vec3{0.813, 0.021, -0.017}; })};
+    c.rigid_invariant = false;  // a gap turns with the bodies, the axes along which it is measured do not
+    out.push_back(c);
+  }
+}
+
+void add_threads(std::vector<SceneCase>& out, Element element) {
+  const std::vector<std::string> covers = {"constraints/segment_pool", "constraints/embedding"};
+  const auto with = [&](const std::string& unit) {
+    auto all = covers;
+    all.push_back(unit);
+    return all;
+  };
+  for (const auto control : {CableControl::tension, CableControl::length_ratio}) {
+    for (const bool anchored : {false, true}) {
+      CableDef def;
+      def.points = {{0.11, 0.12, 0.13}, {0.42, 0.31, 0.57}, {0.81, 0.22, 0.84}};
+      def.control = control;
+      def.amount = Curve::constant(0.9);
+      if (anchored) def.from = Vec3{-1, 0.2, 0.1};
+      if (anchored) def.to = Vec3{1.4, 0.3, 2};
+      if (control != CableControl::tension && anchored) def.stiffness = 4;
+      SceneCase c = on_block(
+          "cable, control " + std::to_string(static_cast<int>(control)) + (anchored ? ", fixed ends" : ""),
+          element, with("constraints/cable"), cable(def));
+      c.rigid_invariant = !anchored;
+      out.push_back(c);
+    }
+  }
+  WindingDef wound;
+  wound.paths = {helix({0, 0.25, 0.5}, {1, 0.25, 0.5}, {0, 0.17, 0.11}, 1.3, 9),
+                 {{0.2, 0.1, 0.2}, {0.9, 0.4, 0.7}}};
+  out.push_back(on_block("winding, inextensible", element, with("constraints/threads"), winding(wound)));
+  wound.stiffness = 2;
+  wound.slack = 0.02;
+  wound.pulls_only = false;
+  SceneCase elastic = on_block("winding, elastic", element, with("constraints/threads"), winding(wound));
+  out.push_back(elastic);
+  StrainLimitDef layer;
+  layer.surfaces = {"z0"};
+  layer.stiffness = 1.5;
+  out.push_back(on_block("layer", element, with("constraints/threads"), strain_limit(layer)));
+}
+
+void add_chambers(std::vector<SceneCase>& out, Element element) {
+  const CellType type = element == Element::tet10 ? CellType::tet10 : CellType::tet4;
+  const auto smaller = [](const Vec3& p) { return wavy((1.0 / 3) * p); };
+  for (const auto control : {CavityControl::pressure, CavityControl::gas, CavityControl::liquid}) {
+    CavityDef def;
+    def.surfaces = {"chamber"};
+    def.control = control;
+    def.amount = Curve::constant(1.2);
+    def.cap_free_openings = true;
+    def.polytropic = 1.4;
+    if (control != CavityControl::gas) {
+      def.density = 1.3;
+      def.gravity = {0.2, -0.4, 1};
+    }
+    ValveDef leak;
+    leak.from = def.name;
+    leak.conductance = 0.1;
+    SceneCase c{"chamber with content, control " + std::to_string(static_cast<int>(control)),
+                {"constraints/cavity", "constraints/chamber_network", "constraints/surface_pool"},
+                mapped(hollow_box(true, type), smaller),
+                element,
+                {{"", soft(), 1000}},
+                {cavity(def)}};
+    if (control != CavityControl::pressure) c.effects.push_back(valve(leak));
+    c.stress_free = false;
+    c.rigid_invariant = def.density == 0;
+    out.push_back(c);
+  }
+}
+
+}  // namespace
+
+void add_attachments(std::vector<SceneCase>& out) {
+  for (const Element element : {Element::tet4, Element::tet10}) {
+    add_held(out, element);
+    add_threads(out, element);
+    add_chambers(out, element);
+  }
+}
+
+}  // namespace test
