@@ -216,8 +216,7 @@ class DirichletEffect final : public EffectSource {
         rows->point.push_back(points[p].at(builder.rest()));
       }
     }
-    // Springs are condensed: their stiffness goes into the matrix, no unknowns are added.
-    if (compliance > 0) rows->treatment = RowTreatment::condensed;
+    // Springs are condensed by default: their stiffness goes into the matrix, no unknowns are added.
     pool->finish();
     rows->stencil_pool = builder.add_stencils(pool);
     instance.rows = rows;

@@ -35,7 +35,11 @@ Result<Mesh> make_mesh(const SceneBody& body, const std::string& folder) {
   const auto& file = std::get<MeshFile>(body.mesh);
   std::filesystem::path path(file.path);
   if (path.is_relative()) path = std::filesystem::path(folder) / path;
-  return read_mesh(path.lexically_normal().string(), {file.scale});
+  auto mesh = read_mesh(path.lexically_normal().string(), {file.scale});
+  if (mesh) {
+    for (Vec3& x : mesh.value().nodes) x += file.offset;
+  }
+  return mesh;
 }
 
 std::string place(const char* list, std::size_t i) {

@@ -210,6 +210,9 @@ Result<void> check_bodies(const SceneDef& s) {
       return Error{place("bodies", b) + ".mesh.scale = " + number(file->scale) +
                    "; it must be a positive number"};
     }
+    if (!std::isfinite(dot(file->offset, file->offset))) {
+      return Error{place("bodies", b) + ".mesh.offset has a coordinate that is no finite number"};
+    }
   }
   for (std::size_t i = 0; i < s.probes.size(); ++i) {
     const Vec3& p = s.probes[i].point;

@@ -8,7 +8,7 @@ namespace isochor {
 
 namespace {
 
-constexpr std::array<LibraryScene, 14> kScenes{{
+constexpr std::array<LibraryScene, 17> kScenes{{
     {"finger", "Bending finger with bellows and a limiting layer, 10 kPa", finger},
     {"tube", "Inflated tube, ends held, 10 kPa", tube},
     {"cushion", "Cushion, 10 kPa", cushion},
@@ -23,6 +23,9 @@ constexpr std::array<LibraryScene, 14> kScenes{{
     {"thick_sphere", "Thick sphere, pressure given", thick_sphere},
     {"thick_sphere_volume", "Thick sphere through its limit point, volume given", thick_sphere_volume},
     {"torsion", "Solid cylinder, one end turned", torsion},
+    {"cable_finger", "Slender arm bent by a cable that is shortened by a tenth", cable_finger},
+    {"gas_tube", "Closed tube into which air flows, isothermal", gas_tube},
+    {"two_chambers", "Two domes whose air equalizes when a valve opens", two_chambers},
 }};
 
 }  // namespace

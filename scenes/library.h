@@ -41,5 +41,8 @@ SceneDef thick_tube_volume(const SceneVariant& variant = {});
 SceneDef thick_sphere(const SceneVariant& variant = {});
 SceneDef thick_sphere_volume(const SceneVariant& variant = {});
 SceneDef torsion(const SceneVariant& variant = {});
+SceneDef cable_finger(const SceneVariant& variant = {});
+SceneDef gas_tube(const SceneVariant& variant = {});
+SceneDef two_chambers(const SceneVariant& variant = {});
 
 }  // namespace isochor

@@ -57,6 +57,7 @@ struct MaterialDef {
 struct MeshFile {
   std::string path;  // relative to SceneDef::folder
   double scale = 1;  // multiplies coordinates: 1e-3 for a file in millimeters
+  Vec3 offset{};     // added to the scaled coordinates [m]
 };
 
 struct SceneBody {

@@ -74,6 +74,7 @@ void describe(Io& io, MeshSource& m) {
   if (auto* file = std::get_if<MeshFile>(&m.mesh)) {
     io.required_text("file", file->path);
     io.number("scale", file->scale, 1.0);
+    io.vector("offset", file->offset, Vec3{});
   }
   if (auto* box = std::get_if<BoxMeshDef>(&m.mesh)) io.object("box", *box);
 }
