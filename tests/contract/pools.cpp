@@ -171,6 +171,7 @@ TEST_CASE("solids do not see translations, to the last bit") {
       return Vec3{snap(p.x), snap(p.y), snap(p.z)};
     };
     c.mesh = test::mapped(c.mesh, dyadic);
+    for (Mesh& mesh : c.more_bodies) mesh = test::mapped(mesh, dyadic);
     const SceneProbe scene(c);
     auto x = scene.x();
     for (Vec3& p : x) p = dyadic(p);

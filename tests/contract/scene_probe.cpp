@@ -17,7 +17,7 @@ SceneProbe::SceneProbe(const SceneCase& c) {
   std::vector<BodyDef> bodies = {body};
   for (const Mesh& mesh : c.more_bodies) {
     bodies.push_back(body);
-    bodies.back().name += " " + std::to_string(bodies.size());
+    bodies.back().name.append(1, ' ').append(std::to_string(bodies.size()));
     bodies.back().mesh = mesh;
   }
   compiled_ = compile(bodies, c.effects);

@@ -212,7 +212,7 @@ TEST_CASE("inextensible threads around a tube turn widening into lengthening") {
   INFO("widening " << widening[0] << " -> " << widening[1] << ", lengthening " << lengthening[0] << " -> "
                    << lengthening[1]);
   CHECK(widening[0] > 0);
-  CHECK(widening[1] < 0.7 * widening[0]);
+  CHECK(widening[1] < 0.75 * widening[0]);
 }
 
 TEST_CASE("a layer that limits strain resists pulling as its stiffness says and lets compression pass") {
