@@ -7,40 +7,6 @@ namespace isochor {
 
 namespace {
 
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-bool finite(const Vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-bool all_finite(const NewtonProblem& p) {
-  const auto ok = [](double v) { return std::isfinite(v); };
-  return std::all_of(p.force.begin(), p.force.end(), finite) &&
-         std::all_of(p.position.begin(), p.position.end(), finite) &&
-         std::all_of(p.target.begin(), p.target.end(), ok) &&
-         std::all_of(p.prescribed.begin(), p.prescribed.end(), ok) &&
-         std::all_of(p.memory.begin(), p.memory.end(), ok) && std::isfinite(p.mass_scale) &&
-         (p.mass_scale == 0 || std::all_of(p.predicted.begin(), p.predicted.end(), finite));
-}
-
-// y += alpha * C v over the compliance entries.
-void add_compliance(const System& s, double alpha, std::span<const double> v, std::span<double> y) {
-  for (const ComplianceEntry& e : s.compliance()) {
-    y[at(e.row)] += alpha * e.value * v[at(e.col)];
-    if (e.row != e.col) y[at(e.col)] += alpha * e.value * v[at(e.row)];
-  }
-}
-
-double compliance_energy(const System& s, std::span<const double> v) {
-  double sum = 0;
-  for (const ComplianceEntry& e : s.compliance()) {
-    const double product = e.value * v[at(e.row)] * v[at(e.col)];
-    sum += e.row == e.col ? 0.5 * product : product;
-  }
-  return sum;
-}
-
 // Where the parabola through the start, its slope and one value has its minimum.
 double parabola_minimum(double tau, double start, double slope, double value) {
   const double curvature = value - start - slope * tau;
@@ -49,84 +15,25 @@ double parabola_minimum(double tau, double start, double slope, double value) {
 
 }  // namespace
 
-std::string_view to_string(NewtonStatus status) {
-  switch (status) {
-    case NewtonStatus::converged:
-      return "converged";
-    case NewtonStatus::iteration_limit:
-      return "iteration limit reached";
-    case NewtonStatus::line_search_failed:
-      return "line search found no descent";
-    case NewtonStatus::singular:
-      return "saddle-point matrix is singular";
-    case NewtonStatus::diverged:
-      return "positions diverged";
-    case NewtonStatus::not_finite:
-      return "not a finite number";
-    case NewtonStatus::cancelled:
-      return "cancelled";
-    case NewtonStatus::out_of_memory:
-      return "out of memory";
-  }
-  return "unknown";
-}
-
 Newton::Newton(std::shared_ptr<const System> system, const Parallel& parallel,
                std::unique_ptr<LinearSolver> solver)
-    : system_(std::move(system)), assembly_(system_, parallel), kkt_(system_, parallel, std::move(solver)) {
+    : SaddlePoint(std::move(system), parallel, std::move(solver)) {
   const System& s = *system_;
   const std::size_t n = at(s.nodes()), m = at(s.rows());
   row_rhs_.resize(m);
   node_rhs_.resize(n);
-  theta_.resize(m);
   row_work_.resize(m);
   lambda_new_.resize(m);
   lambda_trial_.resize(m);
-  prescribed_phi_.resize(at(s.prescribed_rows()));
-  magnitude_.resize(n);
-  rest_stiffness_.assign(n, 0);
-  stiffness_.resize(n);
-  r_.resize(n);
   dx_.resize(n);
-  gap_.resize(n);
   node_work_.resize(n);
   x_trial_.resize(n);
   reaction_.resize(n);
-  if (!s.laws().empty()) {
-    strain_.resize(m);
-    tangent_.resize(s.compliance().size());
-  }
   if (s.has_bounds()) {
     clamped_.assign(m, 0);
     bound_.assign(m, 0);
     to_bound_.assign(m, 0);
   }
-  calibrate();
-}
-
-// Strains of the rows with a law of their own, and their tangents where asked; returns their energy
-// lambda . c - U.
-double Newton::apply_laws(const NewtonProblem& p, std::span<const double> lambda, bool tangents) {
-  const System& s = *system_;
-  double energy = 0;
-  for (const auto& [index, entry] : s.laws()) {
-    const RowPool& pool = *s.parts().row_pools[at(index)];
-    const auto first = at(s.first_row(index)), rows = at(pool.rows());
-    const RowIncrement increment{
-        p.t0, p.t1, p.memory.subspan(at(s.first_memory(index)), static_cast<std::size_t>(pool.memory()))};
-    const auto l = lambda.subspan(first, rows);
-    const auto strain = std::span(strain_).subspan(first, rows);
-    energy -= pool.evaluate_law(
-        increment, l, strain,
-        tangents ? std::span(tangent_).subspan(entry, pool.compliance.size()) : std::span<double>());
-    for (std::size_t r = 0; r < rows; ++r) energy += l[r] * strain[r];
-  }
-  return energy;
-}
-
-void Newton::clamp(std::span<double> lambda) const {
-  const auto lower = system_->row_lower(), upper = system_->row_upper();
-  for (std::size_t r = 0; r < lower.size(); ++r) lambda[r] = std::clamp(lambda[r], lower[r], upper[r]);
 }
 
 // The active set of the primal-dual active-set method: a row whose multiplier would leave its bounds under
@@ -144,163 +51,12 @@ void Newton::choose_clamped(std::span<const double> lambda) {
   }
 }
 
-// Stiffness of the nodes at rest: what forces are compared with. It depends on the scene alone, never on the
-// path, so that a run continued from a checkpoint takes the same decisions.
-void Newton::calibrate() {
-  const System& s = *system_;
-  std::fill(lambda_trial_.begin(), lambda_trial_.end(), 0.0);
-  const std::vector<double> none(at(s.prescribed_rows()), 0.0);
-  assembly_.evaluate(Want::hessian, Definiteness::exact, s.parts().rest, lambda_trial_, none);
-  assembly_.stiffness_diagonal(rest_stiffness_);
-  double largest = 0;
-  for (const double k : rest_stiffness_) largest = std::max(largest, k);
-  for (double& k : rest_stiffness_) k = std::max(k, 1e-9 * largest);
-  stiffness_ = rest_stiffness_;
-}
-
-double Newton::potential(const NewtonProblem& p, std::span<const Vec3> x) const {
-  const System& s = *system_;
-  double inertia = 0, work = 0, given = 0;
-  const auto& rest = s.parts().rest;
-  for (std::size_t i = 0; i < x.size(); ++i) work += dot(p.force[i], x[i] - rest[i]);
-  if (p.mass_scale > 0) {
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const Vec3 d = x[i] - p.predicted[i];
-      inertia += s.parts().mass[i] * dot(d, d);
-    }
-  }
-  for (std::size_t r = 0; r < prescribed_phi_.size(); ++r) given += p.prescribed[r] * prescribed_phi_[r];
-  return assembly_.energy() + 0.5 * p.mass_scale * inertia - work + given;
-}
-
-// Size of the numbers that cancel in the potential: what its rounding error is relative to.
-double Newton::potential_magnitude(const NewtonProblem& p, std::span<const Vec3> x) const {
-  double sum = assembly_.absolute_energy();
-  // However small the strain, an energy is a difference of numbers as large as the stiffness of its element:
-  // its rounding error does not vanish with it.
-  const double spacing = system_->length() / std::cbrt(static_cast<double>(x.size()));
-  for (const double k : rest_stiffness_) sum += 1e-3 * k * spacing * spacing;
-  const auto& rest = system_->parts().rest;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Vec3 u = x[i] - rest[i];
-    sum += norm(p.force[i]) * norm(u);
-    if (p.mass_scale > 0) {
-      const Vec3 d = x[i] - p.predicted[i];
-      sum += 0.5 * p.mass_scale * system_->parts().mass[i] * dot(d, d);
-    }
-  }
-  for (std::size_t r = 0; r < prescribed_phi_.size(); ++r)
-    sum += std::abs(p.prescribed[r] * prescribed_phi_[r]);
-  return sum;
-}
-
-// Residuals of the last evaluation: r = dE/dx + G^T lambda over all nodes, theta = phi - target - C lambda.
-void Newton::assemble_residual(const NewtonProblem& p, std::span<const Vec3> x,
-                               std::span<const double> lambda) {
-  const System& s = *system_;
-  assembly_.residual(r_);
-  assembly_.residual_magnitude(magnitude_);
-  for (std::size_t i = 0; i < r_.size(); ++i) {
-    r_[i] -= p.force[i];
-    magnitude_[i] += norm(p.force[i]);
-    if (p.mass_scale > 0) {
-      const double c = p.mass_scale * s.parts().mass[i];
-      const Vec3 f = c * (x[i] - p.predicted[i]);
-      r_[i] += f;
-      magnitude_[i] += norm(f);
-    }
-  }
-  assembly_.row_values(theta_);
-  for (std::size_t r = 0; r < theta_.size(); ++r) theta_[r] -= p.target[r];
-  add_compliance(s, -1, lambda, theta_);
-  if (!s.laws().empty()) {
-    law_energy_ = apply_laws(p, lambda, false);
-    for (const auto& law : s.laws()) {
-      const auto first = s.first_row(law.row_pool), rows = s.parts().row_pools[at(law.row_pool)]->rows();
-      for (Index r = first; r < first + rows; ++r) theta_[at(r)] -= strain_[at(r)];
-    }
-  }
-  assembly_.prescribed_row_values(prescribed_phi_);
-}
-
-Newton::Residuals Newton::measure(const NewtonProblem& p, std::span<const Vec3> x,
-                                  std::span<const double> lambda) const {
-  const System& s = *system_;
-  double force = 0, reference = 0, row = 0, position = 0;
-  const double floor = 1e-6 * s.length();
-  for (Index i = 0; i < s.nodes(); ++i) {
-    const double k = stiffness_[at(i)];
-    if (k <= 0) continue;
-    Vec3 free = r_[at(i)];
-    const Index b = s.basis_of()[at(i)];
-    if (b >= 0) {
-      const FreeBasis& basis = s.free_bases()[at(b)];
-      const Vec3 q = transposed_times(basis.directions, free);
-      double sum = 0;
-      for (int c = 0; c < basis.count; ++c) sum += q[c] * q[c];
-      force += sum / k;
-    } else {
-      force += dot(free, free) / k;
-    }
-    const double size = std::max(magnitude_[at(i)], k * floor);
-    reference += size * size / k;
-  }
-  if (s.has_bounds()) {
-    // What the projection leaves over: zero when the row is met, or when its multiplier sits at the bound
-    // that theta pushes it against.
-    for (std::size_t r = 0; r < theta_.size(); ++r) {
-      const double d = s.row_metric()[r];
-      const double projected = std::clamp(lambda[r] + theta_[r] / d, s.row_lower()[r], s.row_upper()[r]);
-      row = std::max(row, d * std::abs(projected - lambda[r]) / s.row_measure()[r]);
-    }
-  } else {
-    for (std::size_t r = 0; r < theta_.size(); ++r)
-      row = std::max(row, std::abs(theta_[r]) / s.row_measure()[r]);
-  }
-  if (s.has_prescribers()) {
-    for (Index i = 0; i < s.nodes(); ++i) {
-      const Index b = s.basis_of()[at(i)];
-      if (b < 0) continue;
-      const FreeBasis& basis = s.free_bases()[at(b)];
-      const Vec3 q = transposed_times(basis.directions, p.position[at(b)] - x[at(i)]);
-      for (int c = basis.count; c < 3; ++c) position = std::max(position, std::abs(q[c]));
-    }
-  }
-  const double relative = reference > 0 ? std::sqrt(force / reference) : 0;
-  return {relative, row, s.length() > 0 ? position / s.length() : position};
-}
-
-// Writes the residuals of the last evaluation into the report and says whether they are within tolerance.
-bool Newton::balanced(const NewtonProblem& p, const NewtonOptions& o, std::span<const Vec3> x,
-                      std::span<const double> lambda, NewtonReport& report) const {
-  const Residuals r = measure(p, x, lambda);
-  report.force_residual = r.force;
-  report.row_residual = r.row;
-  return r.force <= o.force_tolerance && r.row <= o.row_tolerance && r.position <= o.position_tolerance;
-}
-
-void Newton::position_gap(const NewtonProblem& p, std::span<const Vec3> x) {
-  has_gap_ = false;
-  const System& s = *system_;
-  std::fill(gap_.begin(), gap_.end(), Vec3{});
-  if (!s.has_prescribers()) return;
-  for (Index i = 0; i < s.nodes(); ++i) {
-    const Index b = s.basis_of()[at(i)];
-    if (b < 0) continue;
-    const FreeBasis& basis = s.free_bases()[at(b)];
-    Vec3 q = transposed_times(basis.directions, p.position[at(b)] - x[at(i)]);
-    for (int c = 0; c < basis.count; ++c) q[c] = 0;
-    gap_[at(i)] = basis.directions * q;
-    if (dot(gap_[at(i)], gap_[at(i)]) > 0) has_gap_ = true;
-  }
-}
-
 // Assembles and factors; mends a wrong inertia by a shift of the displacement block, small at first, and when
 // that grows out of proportion by the stencils' projected Hessians.
-bool Newton::factor(const NewtonProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
-                    NewtonReport& report) {
+bool Newton::factor(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
+                    SaddleReport& report) {
   if (factor_shifted(p.mass_scale, 0, report)) return true;
-  if (report.status == NewtonStatus::out_of_memory) return false;
+  if (report.status == SaddleStatus::out_of_memory) return false;
   ++report.shifted;
   // Starting from a third of what the last wrong inertia took finds the size in one or two trials.
   double shift = shift_ > 0 ? std::max(1e-4, shift_ / 3) : 1e-3;
@@ -309,7 +65,7 @@ bool Newton::factor(const NewtonProblem& p, std::span<const Vec3> x, std::span<c
       shift_ = shift;
       return true;
     }
-    if (report.status == NewtonStatus::out_of_memory) return false;
+    if (report.status == SaddleStatus::out_of_memory) return false;
   }
   {
     const Stopwatch watch(seconds_.evaluate);
@@ -318,13 +74,13 @@ bool Newton::factor(const NewtonProblem& p, std::span<const Vec3> x, std::span<c
   ++report.projected;
   for (shift = 0; shift < 1e3; shift = std::max(1e-3, 30 * shift)) {
     if (factor_shifted(p.mass_scale, shift, report)) return true;
-    if (report.status == NewtonStatus::out_of_memory) return false;
+    if (report.status == SaddleStatus::out_of_memory) return false;
   }
-  report.status = NewtonStatus::singular;
+  report.status = SaddleStatus::singular;
   return false;
 }
 
-bool Newton::factor_shifted(double mass_scale, double shift, NewtonReport& report) {
+bool Newton::factor_shifted(double mass_scale, double shift, SaddleReport& report) {
   Kkt::Values values;
   values.mass_scale = mass_scale;
   values.shift = shift;
@@ -334,7 +90,7 @@ bool Newton::factor_shifted(double mass_scale, double shift, NewtonReport& repor
   const Kkt::Outcome f = kkt_.factor(assembly_, values, seconds_);
   ++report.factorizations;
   report.negative_pivots = f.negative;
-  if (f.status == FactorStatus::out_of_memory) report.status = NewtonStatus::out_of_memory;
+  if (f.status == FactorStatus::out_of_memory) report.status = SaddleStatus::out_of_memory;
   if (f.status != FactorStatus::ok) {
     report.message = f.message;
     return false;
@@ -344,7 +100,7 @@ bool Newton::factor_shifted(double mass_scale, double shift, NewtonReport& repor
 
 // Solves for (dx, dlambda); prescribed coordinates move by their whole gap, multipliers held at a bound by
 // the rest of their way there.
-bool Newton::direction(std::span<const double> lambda, NewtonReport& report) {
+bool Newton::direction(std::span<const double> lambda, SaddleReport& report) {
   const System& s = *system_;
   if (has_gap_) {
     assembly_.hessian_times(gap_, node_work_);
@@ -410,7 +166,7 @@ double Newton::merit_slope(std::span<const double> lambda) {
 }
 
 // Merit at the trial point held in the assembly, tau along the direction.
-double Newton::merit(const NewtonProblem& p, double tau, std::span<const double> lambda_trial) const {
+double Newton::merit(const SaddleProblem& p, double tau, std::span<const double> lambda_trial) const {
   const System& s = *system_;
   double sum = potential(p, x_trial_) + compliance_energy(s, lambda_trial);
   if (!s.laws().empty()) sum += law_energy_;
@@ -435,8 +191,8 @@ double Newton::merit(const NewtonProblem& p, double tau, std::span<const double>
 }
 
 // Moves the trial point to tau along the direction and evaluates there.
-double Newton::try_step(const NewtonProblem& p, double tau, std::span<const Vec3> x,
-                        std::span<const double> lambda, NewtonReport& report) {
+double Newton::try_step(const SaddleProblem& p, double tau, std::span<const Vec3> x,
+                        std::span<const double> lambda, SaddleReport& report) {
   const Stopwatch watch(seconds_.line_search);
   ++report.trials;
   for (std::size_t i = 0; i < x.size(); ++i) x_trial_[i] = x[i] + tau * dx_[i];
@@ -450,8 +206,8 @@ double Newton::try_step(const NewtonProblem& p, double tau, std::span<const Vec3
 
 // Backtracking to sufficient decrease; a shortened step is then polished by up to two parabolas, because
 // evaluations cost a few percent of the factorization that a better step saves.
-bool Newton::search(const NewtonProblem& p, std::span<Vec3> x, std::span<double> lambda,
-                    NewtonReport& report) {
+bool Newton::search(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda,
+                    SaddleReport& report) {
   const System& s = *system_;
   const double slope = merit_slope(lambda);
   std::copy(x.begin(), x.end(), x_trial_.begin());
@@ -500,7 +256,7 @@ bool Newton::search(const NewtonProblem& p, std::span<Vec3> x, std::span<double>
 
 // Takes over the multipliers of the trial point, projected on their bounds. Those that the projection moved
 // change the forces, which are evaluated again.
-void Newton::keep_multipliers(const NewtonProblem& p, std::span<const Vec3> x, std::span<double> lambda) {
+void Newton::keep_multipliers(const SaddleProblem& p, std::span<const Vec3> x, std::span<double> lambda) {
   std::copy(lambda_trial_.begin(), lambda_trial_.end(), lambda.begin());
   if (!system_->has_bounds()) return;
   clamp(lambda);
@@ -511,8 +267,8 @@ void Newton::keep_multipliers(const NewtonProblem& p, std::span<const Vec3> x, s
 
 // Close to the solution the factors at hand are as good as new ones for a step or two: a few percent of the
 // price. True when the state is in balance. A correction that does not pay is dropped.
-bool Newton::correct(const NewtonProblem& p, const NewtonOptions& options, std::span<Vec3> x,
-                     std::span<double> lambda, NewtonReport& report) {
+bool Newton::correct(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
+                     std::span<double> lambda, SaddleReport& report) {
   constexpr double worthwhile = 0.3;  // less of a reduction and a new factorization is the better buy
   if (!full_step_ || report.force_residual > 1e-2 || report.row_residual > 1e-2) return false;
   for (int k = 0; k < 6; ++k) {
@@ -532,14 +288,14 @@ bool Newton::correct(const NewtonProblem& p, const NewtonOptions& options, std::
   return false;
 }
 
-NewtonReport Newton::solve(const NewtonProblem& p, const NewtonOptions& options, std::span<Vec3> x,
+SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                            std::span<double> lambda) {
-  NewtonReport report;
-  const auto fail = [&](NewtonStatus status) {
+  SaddleReport report;
+  const auto fail = [&](SaddleStatus status) {
     report.status = status;
     return report;
   };
-  if (!all_finite(p)) return fail(NewtonStatus::not_finite);
+  if (!all_finite(p)) return fail(SaddleStatus::not_finite);
   // Results are read without an increment.
   struct Increment {
     Assembly& assembly;
@@ -561,28 +317,28 @@ NewtonReport Newton::solve(const NewtonProblem& p, const NewtonOptions& options,
       assembly_.evaluate(Want::hessian, Definiteness::exact, x, lambda, p.prescribed);
       assemble_residual(p, x, lambda);
     }
-    if (iteration == 0 && !std::isfinite(assembly_.energy())) return fail(NewtonStatus::not_finite);
+    if (iteration == 0 && !std::isfinite(assembly_.energy())) return fail(SaddleStatus::not_finite);
     position_gap(p, x);
-    if (cancelled && cancelled()) return fail(NewtonStatus::cancelled);
+    if (cancelled && cancelled()) return fail(SaddleStatus::cancelled);
     if (iteration >= options.max_iterations || report.factorizations >= options.max_factorizations) {
-      return fail(NewtonStatus::iteration_limit);
+      return fail(SaddleStatus::iteration_limit);
     }
     // A state that is already in balance stays to the last bit.
     if (iteration == 0 && balanced(p, options, x, lambda, report)) return report;
     if (s.has_bounds()) choose_clamped(lambda);
     if (!s.laws().empty()) apply_laws(p, lambda, true);
     if (!factor(p, x, lambda, report)) {
-      return fail(report.status == NewtonStatus::converged ? NewtonStatus::singular : report.status);
+      return fail(report.status == SaddleStatus::converged ? SaddleStatus::singular : report.status);
     }
-    if (!direction(lambda, report)) return fail(NewtonStatus::singular);
+    if (!direction(lambda, report)) return fail(SaddleStatus::singular);
     ++report.iterations;
-    if (!search(p, x, lambda, report)) return fail(NewtonStatus::line_search_failed);
+    if (!search(p, x, lambda, report)) return fail(SaddleStatus::line_search_failed);
     const bool done = balanced(p, options, x, lambda, report);
     if (progress) progress(report.iterations, report.force_residual, report.row_residual);
     if (done || correct(p, options, x, lambda, report)) return report;
     for (const Vec3& xi : x) {
       const Vec3 d = xi - origin;
-      if (!(dot(d, d) <= 1e8 * s.length() * s.length())) return fail(NewtonStatus::diverged);
+      if (!(dot(d, d) <= 1e8 * s.length() * s.length())) return fail(SaddleStatus::diverged);
     }
   }
 }

@@ -173,10 +173,10 @@ void World::Impl::accept_memory(double t0, double t1) {
   }
 }
 
-NewtonReport World::Impl::attempt(double h, int max_iterations, int max_factorizations) {
+SaddleReport World::Impl::attempt(double h, int max_iterations, int max_factorizations) {
   const double t_new = state.t + h;
   evaluate_data(t_new);
-  NewtonProblem problem;
+  SaddleProblem problem;
   problem.mass_scale = options.scheme->begin(state, scheme_memory(), h, predicted);
   problem.predicted = predicted;
   problem.force = force;
@@ -187,7 +187,7 @@ NewtonReport World::Impl::attempt(double h, int max_iterations, int max_factoriz
   problem.t1 = t_new;
   problem.memory = std::span<const double>(state.extra).first(at(system->memory()));
   if (problem.mass_scale > 0) problem.increment = {h, state.x};
-  NewtonOptions newton_options;
+  SaddleOptions newton_options;
   newton_options.max_iterations = max_iterations;
   newton_options.max_factorizations = max_factorizations;
   newton_options.force_tolerance = options.force_tolerance;
@@ -203,13 +203,13 @@ NewtonReport World::Impl::attempt(double h, int max_iterations, int max_factoriz
   std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
   const auto& start = dynamic ? predicted : state.x;
   std::copy(start.begin(), start.end(), x_trial.begin());
-  NewtonReport report = newton->solve(problem, newton_options, x_trial, lambda_trial);
-  const bool stuck = report.status != NewtonStatus::converged && report.status != NewtonStatus::cancelled &&
-                     report.status != NewtonStatus::out_of_memory;
+  SaddleReport report = newton->solve(problem, newton_options, x_trial, lambda_trial);
+  const bool stuck = report.status != SaddleStatus::converged && report.status != SaddleStatus::cancelled &&
+                     report.status != SaddleStatus::out_of_memory;
   if (dynamic && stuck) {
     std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
     std::copy(state.x.begin(), state.x.end(), x_trial.begin());
-    NewtonReport second = newton->solve(problem, newton_options, x_trial, lambda_trial);
+    SaddleReport second = newton->solve(problem, newton_options, x_trial, lambda_trial);
     second.iterations += report.iterations;
     second.factorizations += report.factorizations;
     second.trials += report.trials;
@@ -218,7 +218,7 @@ NewtonReport World::Impl::attempt(double h, int max_iterations, int max_factoriz
     second.shifted += report.shifted;
     report = std::move(second);
   }
-  if (report.status == NewtonStatus::converged) {
+  if (report.status == SaddleStatus::converged) {
     accept_memory(state.t, t_new);
     options.scheme->finish(h, x_trial, predicted, state, scheme_memory());
     std::copy(lambda_trial.begin(), lambda_trial.end(), state.lambda.begin());
@@ -229,7 +229,7 @@ NewtonReport World::Impl::attempt(double h, int max_iterations, int max_factoriz
 
 namespace {
 
-void accumulate(StepReport& total, const NewtonReport& r) {
+void accumulate(StepReport& total, const SaddleReport& r) {
   total.iterations += r.iterations;
   total.factorizations += r.factorizations;
   total.trials += r.trials;
@@ -242,7 +242,7 @@ void accumulate(StepReport& total, const NewtonReport& r) {
   total.linear_residual = std::max(total.linear_residual, r.linear_residual);
 }
 
-std::string failure_text(const NewtonReport& r, double t) {
+std::string failure_text(const SaddleReport& r, double t) {
   std::string text =
       "no equilibrium found at t = " + std::to_string(t) + ": " + std::string(to_string(r.status));
   if (!r.message.empty()) text += " (" + r.message + ")";
@@ -289,13 +289,13 @@ StepReport World::step(double h) {
   w.begin_amounts(w.state.t, w.state.t + h);
   StepReport report;
   const double t_target = w.state.t + h;
-  const NewtonReport r = w.attempt(h, w.options.max_iterations, 10 * w.options.max_iterations);
+  const SaddleReport r = w.attempt(h, w.options.max_iterations, 10 * w.options.max_iterations);
   accumulate(report, r);
   report.substeps = 1;
-  if (r.status == NewtonStatus::cancelled) {
+  if (r.status == SaddleStatus::cancelled) {
     report.status = StepStatus::cancelled;
     report.reason = "cancelled by the host";
-  } else if (r.status != NewtonStatus::converged) {
+  } else if (r.status != SaddleStatus::converged) {
     report.status = StepStatus::rejected;
     report.rejected_substeps = 1;
     report.reason = failure_text(r, t_target);
@@ -327,29 +327,29 @@ StepReport World::advance(double h) {
     // What converges at all does so in a dozen iterations; while the increment can still be cut, more are
     // wasted.
     const bool last_chance = 0.5 * dt < w.options.smallest_fraction * h;
-    const NewtonReport r =
+    const SaddleReport r =
         last_chance ? w.attempt(dt, w.options.max_iterations, 2 * w.options.max_iterations)
                     : w.attempt(dt, std::min(w.options.max_iterations, patience), patience_for_factors);
     accumulate(report, r);
-    if (r.status == NewtonStatus::converged) {
+    if (r.status == SaddleStatus::converged) {
       ++report.substeps;
       // Behind a failure the increment grows again only after two successes in a row.
       if (++successes >= 2) increment = std::min(2 * dt, h);
       continue;
     }
     successes = 0;
-    if (r.status == NewtonStatus::cancelled) {
+    if (r.status == SaddleStatus::cancelled) {
       report.status = StepStatus::cancelled;
       report.reason = "cancelled by the host";
       break;
     }
     ++report.rejected_substeps;
     increment = 0.5 * dt;
-    const bool hopeless = r.status == NewtonStatus::out_of_memory || r.status == NewtonStatus::not_finite;
+    const bool hopeless = r.status == SaddleStatus::out_of_memory || r.status == SaddleStatus::not_finite;
     if (increment < w.options.smallest_fraction * h || hopeless) {
       report.status = StepStatus::rejected;
       report.reason = failure_text(r, w.state.t + dt);
-      if (r.status == NewtonStatus::singular) {
+      if (r.status == SaddleStatus::singular) {
         report.reason +=
             ": rows without compliance may repeat each other or lack stabilization, or a part is not held";
       } else if (!hopeless) {

@@ -42,7 +42,7 @@ struct World::Impl {
   // The part of state.extra that the time scheme keeps.
   std::span<double> scheme_memory() { return std::span(state.extra).subspan(at(system->memory())); }
   void accept_memory(double t0, double t1);
-  NewtonReport attempt(double h, int max_iterations, int max_factorizations);
+  SaddleReport attempt(double h, int max_iterations, int max_factorizations);
   StepReport invalid(std::string reason) const;
   void finish_report(StepReport& report, const StageSeconds& before, double total) const;
   // phi - target - C lambda of all compliant rows at the state.

@@ -11,8 +11,8 @@ TEST_CASE("ordering and symbolic work happen once") {
     SmallProblem p(element, 900, std::make_unique<DenseSolver>(calls));
     int iterations = 0;
     for (int step = 1; step <= 6; ++step) {
-      const NewtonReport r = p.solve(step / 6.0);
-      REQUIRE(r.status == NewtonStatus::converged);
+      const SaddleReport r = p.solve(step / 6.0);
+      REQUIRE(r.status == SaddleStatus::converged);
       iterations += r.iterations;
     }
     CHECK(iterations > 6);

@@ -136,7 +136,7 @@ SmallProblem::SmallProblem(Element element, double traction, std::unique_ptr<Lin
   lambda.assign(at(scene.system->rows()), 0.0);
 }
 
-NewtonReport SmallProblem::solve(double t) {
+SaddleReport SmallProblem::solve(double t) {
   data->at_time(*scene.system, t);
   return newton->solve(data->problem(), {}, x, lambda);
 }

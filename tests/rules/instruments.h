@@ -74,7 +74,7 @@ struct SmallProblem {
   // `traction` is the end load [Pa] at t = 1.
   SmallProblem(isochor::Element element, double traction, std::unique_ptr<isochor::LinearSolver> solver,
                std::shared_ptr<Evaluations> counts = nullptr, bool with_empty_effect = false);
-  isochor::NewtonReport solve(double t);
+  isochor::SaddleReport solve(double t);
 };
 
 }  // namespace test

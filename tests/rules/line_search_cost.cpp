@@ -13,7 +13,7 @@ TEST_CASE("a line search never computes a Hessian") {
     const auto pools = static_cast<int>(p.scene.system->parts().stencil_pools.size());
     const int before = counts->hessian;  // the stiffness at rest
     CHECK(before <= pools);
-    const NewtonReport r = p.solve(1);
+    const SaddleReport r = p.solve(1);
     INFO(to_string(r.status) << ", " << r.iterations << " iterations, " << r.trials << " trials");
     CHECK(r.trials > r.iterations);
     CHECK(counts->gradient + counts->value >= pools * r.trials);

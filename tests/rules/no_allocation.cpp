@@ -12,11 +12,11 @@ TEST_CASE("a warm Newton solve allocates nothing") {
   for (const Element element : {Element::tet4, Element::tet4_edge_smoothed, Element::tet10}) {
     INFO(name_of(element));
     SmallProblem p(element, 900, std::make_unique<DenseSolver>());
-    REQUIRE(p.solve(0.2).status == NewtonStatus::converged);
+    REQUIRE(p.solve(0.2).status == SaddleStatus::converged);
     p.data->at_time(*p.scene.system, 0.4);
-    const NewtonProblem problem = p.data->problem();
+    const SaddleProblem problem = p.data->problem();
     const AllocationCount allocations;
-    const NewtonReport r = p.newton->solve(problem, {}, p.x, p.lambda);
+    const SaddleReport r = p.newton->solve(problem, {}, p.x, p.lambda);
     p.data->at_time(*p.scene.system, 0.6);
     const long count = allocations.count();
     CHECK(r.iterations > 0);
@@ -40,12 +40,12 @@ TEST_CASE("a step of the world allocates no more than its linear solver") {
   value(world.add(traction(pull)));
   SmallProblem p(Element::tet4, 900, make_linear_solver(SolverKind::eigen, 100));
   REQUIRE(world.step(0.25).status == StepStatus::converged);
-  REQUIRE(p.solve(0.25).status == NewtonStatus::converged);
+  REQUIRE(p.solve(0.25).status == SaddleStatus::converged);
   const AllocationCount of_world;
   const StepReport w = world.step(0.25);
   const long by_world = of_world.count();
   const AllocationCount of_newton;
-  const NewtonReport n = p.solve(0.5);
+  const SaddleReport n = p.solve(0.5);
   const long by_newton = of_newton.count();
   CHECK(w.factorizations == n.factorizations);
   CHECK(w.iterations == n.iterations);

@@ -63,8 +63,8 @@ void ProblemData::at_time(const System& system, double t) {
   }
 }
 
-NewtonProblem ProblemData::problem() const {
-  NewtonProblem p;
+SaddleProblem ProblemData::problem() const {
+  SaddleProblem p;
   p.mass_scale = mass_scale;
   p.predicted = predicted;
   p.force = force;

@@ -29,7 +29,7 @@ struct ProblemData {
 
   explicit ProblemData(const isochor::System& system);
   void at_time(const isochor::System& system, double t);
-  isochor::NewtonProblem problem() const;
+  isochor::SaddleProblem problem() const;
 };
 
 }  // namespace test

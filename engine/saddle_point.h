@@ -1,0 +1,124 @@
+// What the methods that solve one saddle point share: the problem of an increment, residuals and their scaled
+// norms, the potential, and the linear systems.
+#pragma once
+
+#include <functional>
+
+#include "engine/kkt.h"
+
+namespace isochor {
+
+struct SaddleOptions {
+  int max_iterations = 60;
+  int max_factorizations = 1000;  // mending an inertia takes more than one an iteration
+  // Residual force against the magnitudes that cancel in it, in the norm sqrt(sum |r_i|^2 / k_i), k_i the
+  // stiffness of a node at rest plus its inertia.
+  double force_tolerance = 1e-9;
+  // max |phi - target - C lambda| / measure: relative volume for volume rows.
+  double row_tolerance = 1e-10;
+  // Largest distance to a prescribed position, relative to the scene's length.
+  double position_tolerance = 1e-12;
+};
+
+// What stays fixed while one saddle point is solved.
+struct SaddleProblem {
+  double mass_scale = 0;               // [1/s^2]
+  std::span<const Vec3> predicted;     // inertia's positions; unused when mass_scale is 0
+  std::span<const Vec3> force;         // dead loads [N]
+  std::span<const double> target;      // compliant rows
+  std::span<const double> prescribed;  // multipliers of prescribed rows
+  std::span<const Vec3> position;      // targets of given nodes, one for each System::free_bases() entry
+  double t0 = 0, t1 = 0;               // the increment, for rows with a law of their own
+  std::span<const double> memory;      // System::memory() numbers: what row pools keep between steps
+  StencilIncrement increment;          // for stencils with damping; none in statics
+};
+
+enum class SaddleStatus : std::uint8_t {
+  converged,
+  iteration_limit,
+  line_search_failed,
+  singular,
+  diverged,    // positions left every reasonable bound
+  not_finite,  // NaN or infinity in loads, or an energy without value at the start
+  cancelled,
+  out_of_memory,
+};
+std::string_view to_string(SaddleStatus status);
+
+struct SaddleReport {
+  SaddleStatus status = SaddleStatus::converged;
+  int iterations = 0, factorizations = 0, trials = 0;
+  int corrections = 0;             // further steps on factors at hand
+  int projected = 0, shifted = 0;  // iterations mended by projection and by a diagonal shift
+  Index negative_pivots = -1;      // of the last factorisation; rows() when the inertia is right
+  double force_residual = 0, row_residual = 0, linear_residual = 0;
+  double step = 0;  // largest displacement of the last step [m]
+  std::string message;
+};
+
+class SaddlePoint {
+ public:
+  SaddlePoint(std::shared_ptr<const System> system, const Parallel& parallel,
+              std::unique_ptr<LinearSolver> solver);
+  virtual ~SaddlePoint() = default;
+
+  // Improves x and lambda in place; on anything but converged they hold the last iterate.
+  virtual SaddleReport solve(const SaddleProblem& problem, const SaddleOptions& options, std::span<Vec3> x,
+                             std::span<double> lambda) = 0;
+
+  // Asked once an iteration; true stops the solve.
+  std::function<bool()> cancelled;
+  // Called after every iteration: iteration number and the two residuals.
+  std::function<void(int, double, double)> progress;
+
+  const Assembly& assembly() const { return assembly_; }
+  Assembly& assembly() { return assembly_; }
+  LinearSolver& linear_solver() { return kkt_.linear_solver(); }
+  const StageSeconds& seconds() const { return seconds_; }
+  std::int64_t factor_nonzeros() const { return kkt_.factor_nonzeros(); }
+  int analyses() const { return kkt_.analyses(); }
+  // Internal minus load forces, plus inertia, at the last evaluation: zero at free coordinates in balance,
+  // the support force on the body at given ones [N].
+  std::span<const Vec3> residual() const { return r_; }
+
+ protected:
+  struct Residuals {
+    double force, row, position;
+  };
+  // The following but calibrate() read the last evaluation of the assembly.
+  void calibrate();
+  double potential(const SaddleProblem& p, std::span<const Vec3> x) const;
+  double potential_magnitude(const SaddleProblem& p, std::span<const Vec3> x) const;
+  void assemble_residual(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda);
+  Residuals measure(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda) const;
+  bool balanced(const SaddleProblem& p, const SaddleOptions& o, std::span<const Vec3> x,
+                std::span<const double> lambda, SaddleReport& report) const;
+  double apply_laws(const SaddleProblem& p, std::span<const double> lambda, bool tangents);
+  void clamp(std::span<double> lambda) const;
+  void position_gap(const SaddleProblem& p, std::span<const Vec3> x);
+
+  std::shared_ptr<const System> system_;
+  Assembly assembly_;
+  Kkt kkt_;
+  StageSeconds seconds_;
+  bool has_gap_ = false;   // given coordinates that are not at their targets yet
+  double law_energy_ = 0;  // of the rows with a law of their own, at the last residual
+  std::vector<double> theta_, stiffness_, magnitude_, rest_stiffness_, prescribed_phi_;
+  // Rows with laws: strain and tangent (one for each compliance entry).
+  std::vector<double> strain_, tangent_;
+  std::vector<Vec3> r_, gap_;
+};
+
+inline double norm(const Vec3& v) {
+  return std::sqrt(dot(v, v));
+}
+inline bool finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+bool all_finite(const SaddleProblem& p);
+// y += alpha * C v over the compliance entries.
+void add_compliance(const System& s, double alpha, std::span<const double> v, std::span<double> y);
+// v^T C v / 2 over the compliance entries.
+double compliance_energy(const System& s, std::span<const double> v);
+
+}  // namespace isochor
