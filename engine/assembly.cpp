@@ -44,26 +44,63 @@ Assembly::Assembly(std::shared_ptr<const System> system, const Parallel& paralle
   product_.resize(static_cast<std::size_t>(total.gradient));
   jacobian_.resize(static_cast<std::size_t>(total.jacobian));
   hessian_.resize(static_cast<std::size_t>(total.hessian));
+  if (system_->has_lag()) {
+    lag_x_.resize(at(system_->nodes()));
+    lag_multiplier_.resize(static_cast<std::size_t>(total.function));
+  }
+}
+
+// Multiplier of every function: sum over rows of weight times multiplier.
+void Assembly::gather_multipliers(std::span<const double> lambda, std::span<const double> prescribed,
+                                  std::span<double> out) const {
+  const Gather& g = system_->function_gather();
+  const Index m = system_->rows();
+  parallel_.run(as_index(g.count()), kGatherGrain, [&](Index b, Index e) {
+    for (Index f = b; f < e; ++f) {
+      double sum = 0;
+      const auto to = static_cast<std::size_t>(g.offset[at(f) + 1]);
+      for (auto k = static_cast<std::size_t>(g.offset[at(f)]); k < to; ++k) {
+        const Index row = as_index(g.source[k]);
+        sum += g.weight[k] * (row < m ? lambda[at(row)] : prescribed[at(row - m)]);
+      }
+      out[at(f)] = sum;
+    }
+  });
+}
+
+void Assembly::renew_lag(std::span<const Vec3> x, std::span<const double> lambda,
+                         std::span<const double> prescribed) {
+  if (!system_->has_lag()) return;
+  std::copy(x.begin(), x.end(), lag_x_.begin());
+  gather_multipliers(lambda, prescribed, lag_multiplier_);
+  lagged_ = true;
+}
+
+StencilRequest Assembly::request(Index p, Want want, std::span<const Vec3> x) const {
+  const StencilPool& pool = *system_->parts().stencil_pools[at(p)];
+  const auto first = static_cast<std::size_t>(system_->places()[at(p)].function);
+  const auto functions = at(pool.stencils()) * static_cast<std::size_t>(pool.functions());
+  StencilRequest q{want,
+                   Definiteness::exact,
+                   0,
+                   pool.stencils(),
+                   x,
+                   system_->parts().rest,
+                   {multiplier_.data() + first, functions},
+                   increment_,
+                   {},
+                   {}};
+  if (lagged_ && pool.has_lag()) q.lag = {lag_x_, std::span(lag_multiplier_).subspan(first, functions)};
+  if (pool.memory() > 0 && !memory_.empty()) {
+    q.memory = memory_.subspan(at(system_->first_stencil_memory(p)), static_cast<std::size_t>(pool.memory()));
+  }
+  return q;
 }
 
 void Assembly::evaluate(Want want, Definiteness definiteness, std::span<const Vec3> x,
                         std::span<const double> lambda, std::span<const double> prescribed) {
   const System& s = *system_;
-  const Gather& g = s.function_gather();
-  if (want != Want::value) {
-    const Index m = s.rows();
-    parallel_.run(as_index(g.count()), kGatherGrain, [&](Index b, Index e) {
-      for (Index f = b; f < e; ++f) {
-        double sum = 0;
-        const auto to = static_cast<std::size_t>(g.offset[at(f) + 1]);
-        for (auto k = static_cast<std::size_t>(g.offset[at(f)]); k < to; ++k) {
-          const Index row = as_index(g.source[k]);
-          sum += g.weight[k] * (row < m ? lambda[at(row)] : prescribed[at(row - m)]);
-        }
-        multiplier_[at(f)] = sum;
-      }
-    });
-  }
+  if (want != Want::value) gather_multipliers(lambda, prescribed, multiplier_);
   const auto& pools = s.parts().stencil_pools;
   for (std::size_t p = 0; p < pools.size(); ++p) {
     const StencilPool& pool = *pools[p];
@@ -79,9 +116,13 @@ void Assembly::evaluate(Want want, Definiteness definiteness, std::span<const Ve
         part(energy_, place.energy, stencils), part(value_, place.function, stencils * functions),
         part(gradient_, place.gradient, slots), part(jacobian_, place.jacobian, slots * functions),
         part(hessian_, place.hessian, blocks)};
-    const std::span<const double> sigma(multiplier_.data() + place.function, stencils * functions);
+    StencilRequest whole = request(static_cast<Index>(p), want, x);
+    whole.definiteness = definiteness;
     parallel_.run(pool.stencils(), pool.grain(), [&](Index b, Index e) {
-      pool.evaluate(StencilRequest{want, definiteness, b, e, x, s.parts().rest, sigma, increment_}, out);
+      StencilRequest part_of = whole;
+      part_of.begin = b;
+      part_of.end = e;
+      pool.evaluate(part_of, out);
     });
   }
 }

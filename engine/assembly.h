@@ -13,8 +13,18 @@ class Assembly {
 
   const System& system() const { return *system_; }
 
-  // The increment that evaluations belong to; `before` must live until the next call. {}: none.
-  void set_increment(const StencilIncrement& increment) { increment_ = increment; }
+  // The increment that evaluations belong to, and what pools keep between steps (System::memory() numbers, or
+  // none: pools see no memory); both must live until the next call. {}: none.
+  void set_increment(const StencilIncrement& increment, std::span<const double> memory = {}) {
+    increment_ = increment;
+    memory_ = memory;
+    lagged_ = false;
+  }
+  // What pools with a lag hold on to from now on, until the next set_increment().
+  void renew_lag(std::span<const Vec3> x, std::span<const double> lambda, std::span<const double> prescribed);
+
+  // What a pool is asked for all its stencils at x, with the multipliers of the last evaluation.
+  StencilRequest request(Index pool, Want want, std::span<const Vec3> x) const;
 
   // Evaluates all pools at x with the multipliers of compliant and prescribed rows, up to `want`.
   void evaluate(Want want, Definiteness definiteness, std::span<const Vec3> x, std::span<const double> lambda,
@@ -49,10 +59,16 @@ class Assembly {
 
  private:
   void gather_block(std::int64_t block, Mat3& sum) const;
+  void gather_multipliers(std::span<const double> lambda, std::span<const double> prescribed,
+                          std::span<double> out) const;
 
   std::shared_ptr<const System> system_;
   const Parallel& parallel_;
   StencilIncrement increment_;
+  std::span<const double> memory_;
+  bool lagged_ = false;
+  std::vector<Vec3> lag_x_;
+  std::vector<double> lag_multiplier_;
   std::vector<double> energy_, value_, multiplier_;
   std::vector<Vec3> gradient_, jacobian_;
   std::vector<Mat3> hessian_;

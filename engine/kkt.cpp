@@ -111,6 +111,23 @@ void Kkt::add_condensed(const Values& values) {
   }
 }
 
+// A trace of compliance for the kept rows, relative to what they do in the scaled matrix: the squares of
+// their entries over a unit diagonal.
+void Kkt::add_trace(double trace) {
+  const System& s = *system_;
+  const SymmetricPattern& kkt = s.kkt();
+  std::fill(rhs_.begin(), rhs_.end(), 0.0);
+  for (Index c = 0; c < s.free_unknowns(); ++c) {
+    const auto to = static_cast<std::size_t>(kkt.column_start[at(c) + 1]);
+    for (auto k = static_cast<std::size_t>(kkt.column_start[at(c)]); k < to; ++k) {
+      if (kkt.row[k] >= s.free_unknowns()) rhs_[at(kkt.row[k])] += values_[k] * values_[k];
+    }
+  }
+  for (Index u = s.free_unknowns(); u < kkt.size; ++u) {
+    values_[static_cast<std::size_t>(s.diagonal_place()[at(u)])] -= trace * rhs_[at(u)];
+  }
+}
+
 // Column of a bordered row, in scaled unknowns.
 void Kkt::border_column(Index row, std::span<double> column) const {
   const System& s = *system_;
@@ -233,6 +250,7 @@ Kkt::Outcome Kkt::factor(const Assembly& assembly, const Values& values, StageSe
         }
       }
     });
+    if (values.trace > 0) add_trace(values.trace);
   }
   Outcome outcome;
   if (!analyzed_) {

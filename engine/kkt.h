@@ -36,6 +36,7 @@ class Kkt {
     std::span<const double> stiffness;      // reference of every node [N/m]
     std::span<const double> tangent;        // one for each System::compliance() entry; read where laws are
     std::span<const std::uint8_t> clamped;  // rows held at a bound; empty: none
+    double trace = 0;  // compliance added to the matrix alone, relative; the equations solved are others
   };
   struct Outcome {
     FactorStatus status = FactorStatus::ok;
@@ -58,6 +59,7 @@ class Kkt {
  private:
   void scale_unknowns(const Values& values);
   void add_condensed(const Values& values);
+  void add_trace(double trace);
   Outcome eliminate_border(const Values& values, Outcome outcome);
   void border_column(Index row, std::span<double> column) const;
   double border_dot(Index row, std::span<const double> v) const;

@@ -38,14 +38,18 @@ Newton::Newton(std::shared_ptr<const System> system, const Parallel& parallel,
 
 // The active set of the primal-dual active-set method: a row whose multiplier would leave its bounds under
 // the force law lambda + theta / metric is held at the bound in this linear system (Hintermueller, Ito &
-// Kunisch 2002).
-void Newton::choose_clamped(std::span<const double> lambda) {
+// Kunisch 2002). What just touches at the start of a solve (no multiplier, no distance) is taken as met: a
+// body that rests there would fall freely in the first iteration. Where it pulls away, the next one lets go.
+void Newton::choose_clamped(std::span<const double> lambda, bool first) {
   const System& s = *system_;
   const auto lower = s.row_lower(), upper = s.row_upper();
   any_clamped_ = false;
   for (std::size_t r = 0; r < clamped_.size(); ++r) {
     const double trial = lambda[r] + theta_[r] / s.row_metric()[r];
-    clamped_[r] = trial <= lower[r] || trial >= upper[r];
+    constexpr double touching = 1e-10;  // of the row's measure
+    const double slack = first ? touching * s.row_measure()[r] / s.row_metric()[r] : 0;
+    clamped_[r] =
+        first ? trial < lower[r] - slack || trial > upper[r] + slack : trial <= lower[r] || trial >= upper[r];
     if (clamped_[r]) bound_[r] = trial <= lower[r] ? lower[r] : upper[r];
     any_clamped_ = any_clamped_ || clamped_[r];
   }
@@ -57,6 +61,13 @@ bool Newton::factor(const SaddleProblem& p, std::span<const Vec3> x, std::span<c
                     SaddleReport& report) {
   if (factor_shifted(p.mass_scale, 0, report)) return true;
   if (report.status == SaddleStatus::out_of_memory) return false;
+  // Several bounded rows may ask the same of the same nodes (two obstacles side by side): then their
+  // multipliers are not unique, and a trace of compliance picks some. It slows the iteration by as little.
+  if (system_->has_bounds() && singular_ && trace_ == 0) {
+    trace_ = 1e-8;
+    if (factor_shifted(p.mass_scale, 0, report)) return true;
+    if (report.status == SaddleStatus::out_of_memory) return false;
+  }
   ++report.shifted;
   // Starting from a third of what the last wrong inertia took finds the size in one or two trials.
   double shift = shift_ > 0 ? std::max(1e-4, shift_ / 3) : 1e-3;
@@ -87,7 +98,9 @@ bool Newton::factor_shifted(double mass_scale, double shift, SaddleReport& repor
   values.stiffness = stiffness_;
   values.tangent = tangent_;
   if (any_clamped_) values.clamped = clamped_;
+  values.trace = trace_;
   const Kkt::Outcome f = kkt_.factor(assembly_, values, seconds_);
+  singular_ = f.status == FactorStatus::singular;
   ++report.factorizations;
   report.negative_pivots = f.negative;
   if (f.status == FactorStatus::out_of_memory) report.status = SaddleStatus::out_of_memory;
@@ -271,7 +284,14 @@ bool Newton::correct(const SaddleProblem& p, const SaddleOptions& options, std::
                      std::span<double> lambda, SaddleReport& report) {
   constexpr double worthwhile = 0.3;  // less of a reduction and a new factorization is the better buy
   if (!full_step_ || report.force_residual > 1e-2 || report.row_residual > 1e-2) return false;
-  for (int k = 0; k < 6; ++k) {
+  const bool lags = system_->has_lag();
+  for (int k = 0; k < (lags ? 12 : 6); ++k) {
+    if (lags) {
+      assembly_.renew_lag(x, lambda, p.prescribed);
+      assembly_.evaluate(Want::gradient, Definiteness::exact, x, lambda, p.prescribed);
+      assemble_residual(p, x, lambda);
+      if (balanced(p, options, x, lambda, report)) return true;
+    }
     position_gap(p, x);
     if (has_gap_ || !direction(lambda, report)) return false;
     const double force = report.force_residual, row = report.row_residual;
@@ -283,7 +303,7 @@ bool Newton::correct(const SaddleProblem& p, const SaddleOptions& options, std::
     if (!pays) return false;
     std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
     keep_multipliers(p, x, lambda);
-    if (done) return true;
+    if (done && !lags) return true;
   }
   return false;
 }
@@ -296,14 +316,10 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     return report;
   };
   if (!all_finite(p)) return fail(SaddleStatus::not_finite);
-  // Results are read without an increment.
-  struct Increment {
-    Assembly& assembly;
-    ~Increment() { assembly.set_increment({}); }
-  } const of_this_solve{assembly_};
-  assembly_.set_increment(p.increment);
+  assembly_.set_increment(p.increment, p.memory);
   gamma_ = 0.1;
   shift_ = 0;
+  trace_ = 0;
   for (std::size_t i = 0; i < stiffness_.size(); ++i) {
     stiffness_[i] = rest_stiffness_[i] + p.mass_scale * system_->parts().mass[i];
   }
@@ -314,6 +330,7 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
   for (int iteration = 0;; ++iteration) {
     {
       const Stopwatch watch(seconds_.evaluate);
+      assembly_.renew_lag(x, lambda, p.prescribed);
       assembly_.evaluate(Want::hessian, Definiteness::exact, x, lambda, p.prescribed);
       assemble_residual(p, x, lambda);
     }
@@ -324,8 +341,8 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
       return fail(SaddleStatus::iteration_limit);
     }
     // A state that is already in balance stays to the last bit.
-    if (iteration == 0 && balanced(p, options, x, lambda, report)) return report;
-    if (s.has_bounds()) choose_clamped(lambda);
+    if ((iteration == 0 || s.has_lag()) && balanced(p, options, x, lambda, report)) return report;
+    if (s.has_bounds()) choose_clamped(lambda, iteration == 0);
     if (!s.laws().empty()) apply_laws(p, lambda, true);
     if (!factor(p, x, lambda, report)) {
       return fail(report.status == SaddleStatus::converged ? SaddleStatus::singular : report.status);
@@ -335,7 +352,8 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     if (!search(p, x, lambda, report)) return fail(SaddleStatus::line_search_failed);
     const bool done = balanced(p, options, x, lambda, report);
     if (progress) progress(report.iterations, report.force_residual, report.row_residual);
-    if (done || correct(p, options, x, lambda, report)) return report;
+    // With a lag, balance counts only once it is renewed.
+    if ((done && !s.has_lag()) || correct(p, options, x, lambda, report)) return report;
     for (const Vec3& xi : x) {
       const Vec3 d = xi - origin;
       if (!(dot(d, d) <= 1e8 * s.length() * s.length())) return fail(SaddleStatus::diverged);

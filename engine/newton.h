@@ -27,7 +27,7 @@ class Newton : public SaddlePoint {
 
  private:
   void keep_multipliers(const SaddleProblem& p, std::span<const Vec3> x, std::span<double> lambda);
-  void choose_clamped(std::span<const double> lambda);
+  void choose_clamped(std::span<const double> lambda, bool first);
   bool correct(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                std::span<double> lambda, SaddleReport& report);
   bool factor(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
@@ -40,7 +40,8 @@ class Newton : public SaddlePoint {
                   SaddleReport& report);
   bool search(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda, SaddleReport& report);
 
-  bool full_step_ = false, any_clamped_ = false;
+  bool full_step_ = false, any_clamped_ = false, singular_ = false;
+  double trace_ = 0;    // of compliance in the matrix, where rows repeat each other
   double shift_ = 0;    // the last one that mended the inertia in this solve
   double gamma_ = 0.1;  // more would follow the volume too closely, less would lose descent; raised as needed
 

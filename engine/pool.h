@@ -11,10 +11,18 @@
 
 namespace isochor {
 
-// The increment that stencils with damping look back over.
+// The increment that stencils with a past look back over: damping, friction, obstacles that move.
 struct StencilIncrement {
-  double h = 0;                  // [s]; 0: none (statics, results), and damping is zero
-  std::span<const Vec3> before;  // positions of all nodes when it began [m]
+  double h = 0;                  // [s]; 0: no time passes (statics, results), and damping is zero
+  std::span<const Vec3> before;  // positions of all nodes when it began [m]; empty: there is none (results)
+  double t0 = 0, t1 = 0;         // when it began and ends [s]; load factors in statics
+};
+
+// What stencils hold on to within an iteration and renew between iterations, so that every linear system is
+// symmetric and every line search descends one function: the normal force and the frame of a friction force.
+struct StencilLag {
+  std::span<const Vec3> x;                      // positions of all nodes [m]; empty: nothing to hold on to
+  std::span<const double> function_multiplier;  // as in StencilRequest
 };
 
 // What evaluate() is asked, for stencils [begin, end) of the pool.
@@ -26,6 +34,8 @@ struct StencilRequest {
   std::span<const Vec3> rest;                   // rest positions of all nodes [m]
   std::span<const double> function_multiplier;  // functions() a stencil: sum over rows of weight * multiplier
   StencilIncrement increment{};
+  StencilLag lag{};                  // of pools with has_lag()
+  std::span<const double> memory{};  // StencilPool::memory() numbers as the last accepted step left them
 };
 
 // Where the answers go: spans over the whole pool. Stencil s owns its own places and nothing else, so
@@ -55,6 +65,27 @@ class StencilPool {
   // floor): such stencils may hold a body in statics.
   virtual bool sees_rigid_motion() const { return false; }
   virtual void evaluate(const StencilRequest& request, const StencilSlots& slots) const = 0;
+
+  // True when evaluate() reads request.lag. An equilibrium is one with what it would renew.
+  virtual bool has_lag() const { return false; }
+  // Numbers kept between steps (the pull of a friction force): part of State, zero at the start.
+  virtual int memory() const { return 0; }
+  // What they become when a step is accepted; the request holds the new positions and the old memory.
+  virtual void accept(const StencilRequest& request, std::span<double> memory) const {
+    (void)request;
+    (void)memory;
+  }
+  // True for pools of gaps to what nodes could pass right through within an increment.
+  virtual bool has_barrier() const { return false; }
+  // How many nodes pass through on the straight way from where the increment began to x, seen from what they
+  // pass through. Where `stopped` is not empty they are put there where they meet it.
+  virtual Index passing(const StencilIncrement& increment, std::span<const Vec3> x,
+                        std::span<Vec3> stopped) const {
+    (void)increment;
+    (void)x;
+    (void)stopped;
+    return 0;
+  }
 
   // Offsets of each stencil's packed Hessian blocks, in blocks; filled by finish_topology().
   std::span<const std::int64_t> hessian_offset() const { return hessian_offset_; }

@@ -50,6 +50,8 @@ std::string_view to_string(SaddleStatus status) {
       return "cancelled";
     case SaddleStatus::out_of_memory:
       return "out of memory";
+    case SaddleStatus::passed_through:
+      return "nodes passed through an obstacle";
   }
   return "unknown";
 }

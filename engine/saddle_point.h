@@ -30,7 +30,7 @@ struct SaddleProblem {
   std::span<const Vec3> position;      // targets of given nodes, one for each System::free_bases() entry
   double t0 = 0, t1 = 0;               // the increment, for rows with a law of their own
   std::span<const double> memory;      // System::memory() numbers: what row pools keep between steps
-  StencilIncrement increment;          // for stencils with damping; none in statics
+  StencilIncrement increment;          // for stencils with a past
 };
 
 enum class SaddleStatus : std::uint8_t {
@@ -42,6 +42,7 @@ enum class SaddleStatus : std::uint8_t {
   not_finite,  // NaN or infinity in loads, or an energy without value at the start
   cancelled,
   out_of_memory,
+  passed_through,  // converged, but nodes passed through what they must not
 };
 std::string_view to_string(SaddleStatus status);
 

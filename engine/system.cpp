@@ -305,6 +305,12 @@ class SystemCompiler {
       std::copy(pool.lower.begin(), pool.lower.end(), s_->row_lower_.begin() + first);
       std::copy(pool.upper.begin(), pool.upper.end(), s_->row_upper_.begin() + first);
     }
+    for (const auto& pool : s_->parts_.stencil_pools) {
+      s_->first_stencil_memory_.push_back(s_->memory_);
+      s_->memory_ += pool->memory();
+      s_->has_lag_ = s_->has_lag_ || pool->has_lag();
+      s_->has_barrier_ = s_->has_barrier_ || pool->has_barrier();
+    }
   }
 
   // A pool that is left to us is condensed when that fills no new place and loses no digits: every row lies

@@ -102,9 +102,13 @@ class System {
   std::span<const double> row_lower() const { return row_lower_; }
   std::span<const double> row_upper() const { return row_upper_; }
   bool has_bounds() const { return !row_lower_.empty(); }
-  // Numbers that row pools keep between steps: all, and where those of a pool begin.
+  // Numbers that row and stencil pools keep between steps: all, and where those of a pool begin.
   Index memory() const { return memory_; }
   Index first_memory(Index row_pool) const { return first_memory_[at(row_pool)]; }
+  Index first_stencil_memory(Index stencil_pool) const { return first_stencil_memory_[at(stencil_pool)]; }
+  // Some stencils hold on to positions and multipliers within an iteration; nodes could pass through some.
+  bool has_lag() const { return has_lag_; }
+  bool has_barrier() const { return has_barrier_; }
   std::span<const double> row_metric() const { return row_metric_; }
   std::span<const double> row_measure() const { return row_measure_; }
   std::span<const std::int64_t> diagonal_place() const { return diagonal_place_; }
@@ -135,7 +139,8 @@ class System {
   std::vector<std::int64_t> condensed_place_;
   std::vector<BorderCompliance> border_compliance_;
   Index memory_ = 0;
-  std::vector<Index> first_memory_;
+  std::vector<Index> first_memory_, first_stencil_memory_;
+  bool has_lag_ = false, has_barrier_ = false;
 };
 
 }  // namespace isochor

@@ -159,18 +159,40 @@ void World::Impl::evaluate_data(double t) {
   }
 }
 
-// What row pools keep from one step to the next, from the multipliers that the step arrived at.
-void World::Impl::accept_memory(double t0, double t1) {
+// What pools keep from one step to the next, from the positions and multipliers that the step arrived at.
+void World::Impl::accept_memory(const StencilIncrement& increment) {
   if (system->memory() == 0) return;
   std::copy_n(state.extra.begin(), memory_before.size(), memory_before.begin());
   for (Index p = 0; p < static_cast<Index>(system->parts().row_pools.size()); ++p) {
     const RowPool& pool = *system->parts().row_pools[at(p)];
     if (pool.memory() == 0) continue;
     const auto first = at(system->first_memory(p)), count = static_cast<std::size_t>(pool.memory());
-    pool.accept({t0, t1, std::span<const double>(memory_before).subspan(first, count)},
+    pool.accept({increment.t0, increment.t1, std::span<const double>(memory_before).subspan(first, count)},
                 std::span<const double>(lambda_trial).subspan(at(system->first_row(p)), at(pool.rows())),
                 std::span(state.extra).subspan(first, count));
   }
+  const Assembly& assembly = newton->assembly();
+  for (Index p = 0; p < static_cast<Index>(system->parts().stencil_pools.size()); ++p) {
+    const StencilPool& pool = *system->parts().stencil_pools[at(p)];
+    if (pool.memory() == 0) continue;
+    const auto first = at(system->first_stencil_memory(p)), count = static_cast<std::size_t>(pool.memory());
+    StencilRequest request = assembly.request(p, Want::value, x_trial);
+    request.increment = increment;
+    request.memory = std::span<const double>(memory_before).subspan(first, count);
+    pool.accept(request, std::span(state.extra).subspan(first, count));
+  }
+}
+
+// Nodes of the trial positions that passed through something since the increment began; where asked, they are
+// put where they met it.
+Index World::Impl::count_passing(const StencilIncrement& increment, bool stop) {
+  if (!system->has_barrier()) return 0;
+  Index count = 0;
+  for (const auto& pool : system->parts().stencil_pools) {
+    if (!pool->has_barrier()) continue;
+    count += pool->passing(increment, x_trial, stop ? std::span<Vec3>(x_trial) : std::span<Vec3>());
+  }
+  return count;
 }
 
 SaddleReport World::Impl::attempt(double h, int max_iterations, int max_factorizations) {
@@ -186,7 +208,7 @@ SaddleReport World::Impl::attempt(double h, int max_iterations, int max_factoriz
   problem.t0 = state.t;
   problem.t1 = t_new;
   problem.memory = std::span<const double>(state.extra).first(at(system->memory()));
-  if (problem.mass_scale > 0) problem.increment = {h, state.x};
+  problem.increment = {problem.mass_scale > 0 ? h : 0, state.x, state.t, t_new};
   SaddleOptions newton_options;
   newton_options.max_iterations = max_iterations;
   newton_options.max_factorizations = max_factorizations;
@@ -203,13 +225,20 @@ SaddleReport World::Impl::attempt(double h, int max_iterations, int max_factoriz
   std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
   const auto& start = dynamic ? predicted : state.x;
   std::copy(start.begin(), start.end(), x_trial.begin());
+  count_passing(problem.increment, true);
   SaddleReport report = newton->solve(problem, newton_options, x_trial, lambda_trial);
+  if (report.status == SaddleStatus::converged && count_passing(problem.increment, false) > 0) {
+    report.status = SaddleStatus::passed_through;
+  }
   const bool stuck = report.status != SaddleStatus::converged && report.status != SaddleStatus::cancelled &&
                      report.status != SaddleStatus::out_of_memory;
   if (dynamic && stuck) {
     std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
     std::copy(state.x.begin(), state.x.end(), x_trial.begin());
     SaddleReport second = newton->solve(problem, newton_options, x_trial, lambda_trial);
+    if (second.status == SaddleStatus::converged && count_passing(problem.increment, false) > 0) {
+      second.status = SaddleStatus::passed_through;
+    }
     second.iterations += report.iterations;
     second.factorizations += report.factorizations;
     second.trials += report.trials;
@@ -219,7 +248,7 @@ SaddleReport World::Impl::attempt(double h, int max_iterations, int max_factoriz
     report = std::move(second);
   }
   if (report.status == SaddleStatus::converged) {
-    accept_memory(state.t, t_new);
+    accept_memory(problem.increment);
     options.scheme->finish(h, x_trial, predicted, state, scheme_memory());
     std::copy(lambda_trial.begin(), lambda_trial.end(), state.lambda.begin());
     std::copy(newton->residual().begin(), newton->residual().end(), reactions.begin());

@@ -41,7 +41,8 @@ struct World::Impl {
   void evaluate_data(double t);
   // The part of state.extra that the time scheme keeps.
   std::span<double> scheme_memory() { return std::span(state.extra).subspan(at(system->memory())); }
-  void accept_memory(double t0, double t1);
+  void accept_memory(const StencilIncrement& increment);
+  Index count_passing(const StencilIncrement& increment, bool stop);
   SaddleReport attempt(double h, int max_iterations, int max_factorizations);
   StepReport invalid(std::string reason) const;
   void finish_report(StepReport& report, const StageSeconds& before, double total) const;

@@ -10,6 +10,8 @@ namespace isochor {
 
 void World::Impl::evaluate_state(Want want) {
   evaluate_data(state.t);
+  newton->assembly().set_increment({0, {}, state.t, state.t},
+                                   std::span<const double>(state.extra).first(at(system->memory())));
   newton->assembly().evaluate(want, Definiteness::exact, state.x, state.lambda, prescribed);
 }
 

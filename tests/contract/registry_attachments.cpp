@@ -1,5 +1,6 @@
 // Supports by rows, ties, cables, threads, chambers with content.
 #include "contract/registry.h"
+#include "isochor/contact.h"
 #include "support/meshes.h"
 
 namespace test {
@@ -128,6 +129,29 @@ void add_chambers(std::vector<SceneCase>& out, Element element) {
   }
 }
 
+void add_contacts(std::vector<SceneCase>& out, Element element) {
+  for (const auto shape : {ObstacleShape::plane, ObstacleShape::sphere, ObstacleShape::capsule,
+                           ObstacleShape::cylinder, ObstacleShape::box}) {
+    ContactDef def;
+    def.obstacle.shape = shape;
+    def.obstacle.position = {0.2, 0.3, -1.7};
+    def.obstacle.axis = {0.1, 0.2, 1};
+    def.obstacle.radius = 0.4;
+    def.obstacle.length = 0.7;
+    def.obstacle.size = {0.9, 0.7, 0.5};
+    if (shape == ObstacleShape::box) def.obstacle.rounding = 0.05;
+    def.obstacle.motion.keys = {{0, {0, 0, 0}, {1, 0, 0, 0}}, {1, {0.1, 0, 0.05}, {0.8, 0, 0.6, 0}}};
+    def.friction = 0.3;
+    if (shape == ObstacleShape::sphere) def.compliance = 1e-3;
+    SceneCase c = on_block("contact, shape " + std::to_string(static_cast<int>(shape)), element,
+                           {"constraints/contact", "constraints/contact_pool", "constraints/obstacle_shape",
+                            "constraints/surface_nodes"},
+                           contact(def));
+    c.stress_free = c.rigid_invariant = false;  // distances to something that does not move with the body
+    out.push_back(c);
+  }
+}
+
 }  // namespace
 
 void add_attachments(std::vector<SceneCase>& out) {
@@ -135,6 +159,7 @@ void add_attachments(std::vector<SceneCase>& out) {
     add_held(out, element);
     add_threads(out, element);
     add_chambers(out, element);
+    add_contacts(out, element);
   }
 }
 

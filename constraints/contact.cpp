@@ -1,0 +1,179 @@
+#include "isochor/contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "constraints/contact_pool.h"
+#include "constraints/embedding.h"
+#include "constraints/surface_nodes.h"
+#include "engine/builder.h"
+
+namespace isochor {
+
+namespace {
+
+std::string number(double v) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6g", v);
+  return text;
+}
+
+// One row a node: gap - target - C multiplier = 0 with multiplier <= 0, C the compliance over the node's
+// area.
+class ContactRows final : public RowPool {
+ public:
+  explicit ContactRows(std::string name, double resolve_time)
+      : name_(std::move(name)), resolve_time_(resolve_time) {}
+  std::string_view name() const override { return name_; }
+  void update(double t, std::span<double> value) const override {
+    const double left = std::max(0.0, 1 - t / resolve_time_);
+    for (std::size_t r = 0; r < value.size(); ++r) value[r] = overlap.empty() ? 0 : left * overlap[r];
+  }
+  std::vector<double> area;     // [m^2]
+  std::vector<double> overlap;  // gap at the start where it is below zero, else zero [m]; empty: none is
+
+ private:
+  std::string name_;
+  double resolve_time_;
+};
+
+class ContactInstance final : public EffectInstance {
+ public:
+  ContactInstance(std::shared_ptr<const ContactPool> pool, std::shared_ptr<const ContactRows> rows,
+                  Index row_pool)
+      : pool_(std::move(pool)), rows_(std::move(rows)), row_pool_(row_pool) {}
+
+  void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
+    const Obstacle& obstacle = pool_->obstacle();
+    const ObstaclePose pose = pose_of(obstacle, c.state.t);
+    const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
+    const bool rubs = pool_->memory() > 0;
+    const double* pull =
+        rubs ? c.state.extra.data() + c.system.first_stencil_memory(rows_->stencil_pool) : nullptr;
+    Vec3 force{};
+    double normal = 0, tangential = 0, area = 0, pressure = 0, gap = std::numeric_limits<double>::infinity();
+    for (Index s = 0; s < pool_->stencils(); ++s) {
+      const Distance d = distance_to(obstacle, pose.to_own(c.state.x[at(pool_->nodes()[s][0])]));
+      gap = std::min(gap, d.value);
+      if (!(lambda[at(s)] < 0)) continue;
+      normal -= lambda[at(s)];
+      area += rows_->area[at(s)];
+      pressure = std::max(pressure, -lambda[at(s)] / rows_->area[at(s)]);
+      force -= lambda[at(s)] * (pose.R * d.normal);
+      if (!rubs) continue;
+      const Vec3 f{pull[3 * s], pull[3 * s + 1], pull[3 * s + 2]};
+      tangential += std::sqrt(dot(f, f));
+      force -= pose.R * f;
+    }
+    const std::string name(rows_->name());
+    const auto put = [&](const char* quantity, const char* unit, double value) {
+      out.push_back({name, "contact", quantity, unit, value});
+    };
+    put("force_x", "N", force.x);
+    put("force_y", "N", force.y);
+    put("force_z", "N", force.z);
+    put("normal_force", "N", normal);
+    put("friction_force", "N", tangential);
+    put("contact_area", "m2", area);
+    put("largest_pressure", "Pa", pressure);
+    put("smallest_gap", "m", gap);
+  }
+
+ private:
+  std::shared_ptr<const ContactPool> pool_;
+  std::shared_ptr<const ContactRows> rows_;
+  Index row_pool_;
+};
+
+class ContactEffect final : public EffectSource {
+ public:
+  explicit ContactEffect(ContactDef def) : def_(std::move(def)) {}
+  const std::string& name() const override { return def_.name; }
+
+  Result<void> check() const override {
+    if (auto r = check_obstacle(def_.obstacle); !r) return Error{who() + r.error()};
+    for (const auto& [key, value, unit] : {std::tuple{"compliance", def_.compliance, "m/Pa"},
+                                           {"friction", def_.friction, ""},
+                                           {"stick_stiffness", def_.stick_stiffness, "Pa/m"}}) {
+      if (value >= 0 && std::isfinite(value)) continue;
+      return Error{who() + key + " = " + number(value) + (*unit ? " " : "") + unit +
+                   "; it must be zero or positive"};
+    }
+    if (!(def_.resolve_time > 0)) {
+      return Error{who() + "resolve_time = " + number(def_.resolve_time) + " s; it must be positive"};
+    }
+    return {};
+  }
+
+  Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
+    auto faces = surface_faces(builder, def_.body, def_.surfaces, "contact \"" + def_.name + "\"");
+    if (!faces) return Error{faces.error()};
+    const BodyData& body = builder.body(def_.body);
+    const double mu = stiffest(body), length = builder.length();
+    auto pool = std::make_shared<ContactPool>(def_.name, def_.obstacle, def_.friction);
+    auto rows = std::make_shared<ContactRows>(def_.name, def_.resolve_time);
+    const auto per = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
+    for (const auto& [node, area] : surface_nodes(faces.value(), per, builder.rest())) {
+      if (builder.given_directions(node) == 3) continue;  // goes where it is told to
+      const double edge = std::sqrt(area);
+      const Index row = rows->rows();
+      pool->add(node, def_.stick_stiffness > 0 ? def_.stick_stiffness * area : 100 * mu * edge);
+      rows->map.push({&row, 1});
+      rows->weight.push_back(1);
+      rows->area.push_back(area);
+      rows->metric.push_back(1 / (mu * edge));
+      rows->measure.push_back(length);
+      if (def_.compliance > 0) rows->compliance.push_back({row, row, def_.compliance / area});
+    }
+    if (rows->rows() == 0) {
+      return Error{who() + "all nodes of its surfaces are held by supports; take surfaces that can move"};
+    }
+    pool->finish();
+    rows->lower.assign(rows->area.size(), -std::numeric_limits<double>::infinity());
+    rows->upper.assign(rows->area.size(), 0.0);
+    if (auto r = find_overlap(builder, *pool, *rows); !r) return Error{r.error()};
+    rows->stencil_pool = builder.add_stencils(pool);
+    const Index row_pool = builder.add_rows(rows);
+    return std::unique_ptr<EffectInstance>(std::make_unique<ContactInstance>(pool, rows, row_pool));
+  }
+
+ private:
+  std::string who() const { return "contact \"" + def_.name + "\": "; }
+
+  Result<void> find_overlap(const Builder& builder, const ContactPool& pool, ContactRows& rows) const {
+    const ObstaclePose pose = pose_of(def_.obstacle, 0);
+    Index worst = -1, inside = 0;
+    double deepest = -1e-9 * builder.length();
+    std::vector<double> overlap(rows.area.size(), 0.0);
+    for (Index s = 0; s < pool.stencils(); ++s) {
+      const Index node = pool.nodes()[s][0];
+      const double gap = distance_value(def_.obstacle, pose.to_own(builder.rest()[at(node)]));
+      overlap[at(s)] = std::min(gap, 0.0);
+      if (gap < -1e-9 * builder.length()) ++inside;
+      if (gap >= deepest) continue;
+      deepest = gap;
+      worst = node;
+    }
+    if (worst < 0) return {};
+    if (def_.initial_overlap == InitialOverlap::resolve) {
+      rows.overlap = std::move(overlap);
+      return {};
+    }
+    const BodyData& body = builder.body(def_.body);
+    return Error{who() + std::to_string(inside) + " nodes of body \"" + body.name +
+                 "\" are inside the obstacle at the start, node " + std::to_string(worst - body.first_node) +
+                 " by " + number(-deepest) +
+                 " m; move one of the two, or set initial_overlap to resolve to have them pushed out"};
+  }
+
+  ContactDef def_;
+};
+
+}  // namespace
+
+EffectPtr contact(ContactDef def) {
+  return std::make_shared<ContactEffect>(std::move(def));
+}
+
+}  // namespace isochor

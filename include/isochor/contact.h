@@ -1,0 +1,56 @@
+// Contact of soft bodies with rigid obstacles. Each function makes an effect for World::add.
+#pragma once
+
+#include <array>
+
+#include "isochor/poses.h"
+#include "isochor/world.h"
+
+namespace isochor {
+
+enum class ObstacleShape : std::uint8_t {
+  plane,     // solid below its own x-y plane
+  sphere,    // radius
+  capsule,   // radius around a segment of `length` along its own z axis
+  cylinder,  // radius, `length` along its own z axis
+  box,       // edges `size` along its own axes
+};
+
+// A rigid body that is where it is told to be.
+struct Obstacle {
+  ObstacleShape shape = ObstacleShape::plane;
+  Vec3 position{};      // of its own origin, the middle of the shape [m]
+  Vec3 axis{0, 0, 1};   // direction of its own z axis: normal of a plane, axis of a capsule or cylinder
+  Vec3 side{1, 0, 0};   // its own x axis, as far as it is perpendicular to `axis`
+  double radius = 0;    // [m]
+  double length = 0;    // [m], of a capsule between the middles of its ends
+  Vec3 size{};          // [m], full edges of a box
+  double rounding = 0;  // [m], radius of the edges of cylinders and boxes, inside the size given
+  // Moves it; at the first keyframe it is as described above. Empty: it rests.
+  PoseTrack motion;
+};
+
+// What becomes of nodes that are inside the obstacle at the start.
+enum class InitialOverlap : std::uint8_t {
+  report,   // refused, with node and depth
+  resolve,  // pushed out little by little until `resolve_time`
+};
+
+// Nodes of a body's surface against one obstacle: they do not enter it, it does not pull, and friction holds
+// or brakes them. Add supports first: nodes that are held in all directions are left out.
+struct ContactDef {
+  std::string name = "contact";
+  BodyId body{};
+  std::vector<std::string> surfaces;  // empty: the whole boundary of the body
+  Obstacle obstacle;
+  double compliance = 0;  // [m/Pa]: depth over pressure of a soft layer; 0: hard
+  double friction = 0;    // coefficient of Coulomb friction [-]
+  // Of friction below its limit, shear stress over slip [Pa/m]: the slip that remains when it sticks is
+  // elastic. 0: a hundred times the shear modulus over the size of a face.
+  double stick_stiffness = 0;
+  InitialOverlap initial_overlap = InitialOverlap::report;
+  double resolve_time = 1;  // [s]; statics: load factor
+};
+EffectPtr contact(ContactDef def);
+
+}  // namespace isochor
