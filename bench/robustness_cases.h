@@ -39,13 +39,14 @@ inline double draw(std::mt19937& random) {
   return static_cast<double>(random()) / 4294967296.0;
 }
 
-// How the cube is made. Stable neo-Hookean throughout: it has a value for inverted elements.
+// How the cube is made and solved. Stable neo-Hookean throughout: it has a value for inverted elements.
 struct Formulation {
   std::string name;
   Element element = Element::hex8;
   double poisson = 0.49;
   bool rows = false;  // volume rows carry the bulk modulus; else the complete one-field energy
   VolumeSpace space = VolumeSpace::node;
+  Definiteness definiteness = Definiteness::exact;
 };
 
 inline Mesh unit_cube(Element element, int divisions) {
@@ -59,7 +60,7 @@ struct Cube {
   BodyId body{};
 
   Cube(const Formulation& f, int divisions, int max_iterations, bool absolute_tolerance = false)
-      : world(must(World::create(options(max_iterations, absolute_tolerance)))) {
+      : world(must(World::create(options(f, max_iterations, absolute_tolerance)))) {
     BodyDef def;
     def.mesh = unit_cube(f.element, divisions);
     def.element = f.element;
@@ -77,9 +78,10 @@ struct Cube {
     }
   }
 
-  static WorldOptions options(int max_iterations, bool loose) {
+  static WorldOptions options(const Formulation& f, int max_iterations, bool loose) {
     WorldOptions o;
     o.scheme = statics();
+    o.definiteness = f.definiteness;
     o.threads = 1;
     o.max_iterations = max_iterations;
     if (loose) o.force_tolerance = 1e-6;
@@ -178,6 +180,7 @@ Outcome recover_from(const Formulation& f, int divisions, int max_iterations, co
 
 struct Twist {
   std::vector<StepReport> solves;
+  std::vector<std::vector<double>> residuals;  // of force, after each iteration of each solve
   BodyMeasures measures;
 };
 
@@ -199,7 +202,9 @@ inline Twist twist(const Formulation& f, int divisions, int max_iterations) {
   turned.amount = Curve::ramp(1, 2);
   must(cube.world.add(dirichlet(turned)));
   Twist t;
+  cube.world.on_progress([&](const ProgressInfo& p) { t.residuals.back().push_back(p.force_residual); });
   for (int solve = 0; solve < 2; ++solve) {
+    t.residuals.emplace_back();
     t.solves.push_back(cube.world.step(1));
     if (t.solves.back().status != StepStatus::converged) break;
   }

@@ -16,10 +16,6 @@ namespace isochor {
 // How much of a function is asked for; each level includes the ones before it.
 enum class Want : std::uint8_t { value, gradient, hessian };
 
-// What to do with indefinite stencil Hessians: keep them, raise negative eigenvalues to zero, or turn them
-// positive. Kernels are exact unless the engine asks otherwise.
-enum class Definiteness : std::uint8_t { exact, projected, absolute };
-
 // Row-major 3x3 block.
 struct Mat3 {
   std::array<double, 9> m{};

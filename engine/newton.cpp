@@ -80,7 +80,8 @@ bool Newton::factor(const SaddleProblem& p, std::span<const Vec3> x, std::span<c
   }
   {
     const Stopwatch watch(seconds_.evaluate);
-    assembly_.evaluate(Want::hessian, Definiteness::projected, x, lambda, p.prescribed);
+    assembly_.evaluate(Want::hessian, std::max(definiteness_, Definiteness::projected), x, lambda,
+                       p.prescribed);
   }
   ++report.projected;
   for (shift = 0; shift < 1e3; shift = std::max(1e-3, 30 * shift)) {
@@ -317,6 +318,7 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
   };
   if (!all_finite(p)) return fail(SaddleStatus::not_finite);
   assembly_.set_increment(p.increment, p.memory);
+  definiteness_ = options.definiteness;
   gamma_ = 0.1;
   shift_ = 0;
   trace_ = 0;
@@ -331,7 +333,7 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     {
       const Stopwatch watch(seconds_.evaluate);
       assembly_.renew_lag(x, lambda, p.prescribed);
-      assembly_.evaluate(Want::hessian, Definiteness::exact, x, lambda, p.prescribed);
+      assembly_.evaluate(Want::hessian, definiteness_, x, lambda, p.prescribed);
       assemble_residual(p, x, lambda);
     }
     if (iteration == 0 && !std::isfinite(assembly_.energy())) return fail(SaddleStatus::not_finite);

@@ -41,6 +41,7 @@ class Newton : public SaddlePoint {
   bool search(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda, SaddleReport& report);
 
   bool full_step_ = false, any_clamped_ = false, singular_ = false;
+  Definiteness definiteness_ = Definiteness::exact;
   double trace_ = 0;    // of compliance in the matrix, where rows repeat each other
   double shift_ = 0;    // the last one that mended the inertia in this solve
   double gamma_ = 0.1;  // more would follow the volume too closely, less would lose descent; raised as needed

@@ -16,6 +16,8 @@ struct SaddleOptions {
   double force_tolerance = 1e-9;
   // max |phi - target - C lambda| / measure: relative volume for volume rows.
   double row_tolerance = 1e-10;
+  // Of the stencils' Hessians in every matrix.
+  Definiteness definiteness = Definiteness::exact;
   // Largest distance to a prescribed position, relative to the scene's length.
   double position_tolerance = 1e-12;
 };

@@ -212,6 +212,7 @@ SaddleReport World::Impl::attempt(double h, int max_iterations, int max_factoriz
   SaddleOptions newton_options;
   newton_options.max_iterations = max_iterations;
   newton_options.max_factorizations = max_factorizations;
+  newton_options.definiteness = options.definiteness;
   newton_options.force_tolerance = options.force_tolerance;
   newton_options.row_tolerance = options.row_tolerance;
   newton->progress = nullptr;

@@ -134,6 +134,7 @@ Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
   world_options.solver = a.solver;
   world_options.threads = options.threads;
   world_options.max_iterations = a.max_iterations;
+  world_options.definiteness = a.definiteness;
   world_options.force_tolerance = a.force_tolerance;
   world_options.row_tolerance = a.row_tolerance;
   world_options.smallest_fraction = a.smallest_fraction;

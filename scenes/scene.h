@@ -87,6 +87,7 @@ struct AnalysisDef {
   std::optional<double> step;                      // [s], instead of steps
   Solver solver = Solver::automatic;
   int max_iterations = 60;
+  Definiteness definiteness = Definiteness::exact;
   double force_tolerance = 1e-9, row_tolerance = 1e-10;  // see WorldOptions
   double smallest_fraction = 1.0 / 64;
 };

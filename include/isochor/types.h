@@ -93,4 +93,8 @@ enum class RowTreatment : std::uint8_t {
   bordered,   // eliminated around the factorization: a few rows over many nodes, without fill in the matrix
 };
 
+// What a method does with the indefinite Hessian of an element: keeps it, raises its negative eigenvalues to
+// zero, or turns them positive.
+enum class Definiteness : std::uint8_t { exact, projected, absolute };
+
 }  // namespace isochor

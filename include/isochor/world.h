@@ -71,8 +71,12 @@ enum class Solver : std::uint8_t { automatic, mumps, cholmod, eigen };
 struct WorldOptions {
   SchemePtr scheme;  // required: implicit_euler(), statics(), ...
   Solver solver = Solver::automatic;
-  int threads = 0;                // 0: all the machine has. The answer does not depend on it.
-  int max_iterations = 60;        // Newton iterations a step
+  int threads = 0;          // 0: all the machine has. The answer does not depend on it.
+  int max_iterations = 60;  // Newton iterations a step
+  // Hessians of elements in Newton's method. Exact ones, made definite only where the matrix of a whole step
+  // has the wrong inertia, need the fewest iterations; definite ones from the start lead other ways out of
+  // crushed and tangled shapes (docs/elements.md).
+  Definiteness definiteness = Definiteness::exact;
   double force_tolerance = 1e-9;  // unbalanced force, relative to the forces that cancel
   double row_tolerance = 1e-10;   // relative volume (or other measure) error of a row
   // Adaptive increments of advance(): smallest fraction of the increment asked for.

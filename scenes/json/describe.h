@@ -281,6 +281,7 @@ void describe(Io& io, AnalysisDef& a) {
   io.optional_number("step", a.step);
   io.word("solver", a.solver, Solver::automatic);
   io.integer("max_iterations", a.max_iterations, 60);
+  io.word("definiteness", a.definiteness, Definiteness::exact);
   io.number("force_tolerance", a.force_tolerance, 1e-9);
   io.number("row_tolerance", a.row_tolerance, 1e-10);
   io.number("smallest_fraction", a.smallest_fraction, 1.0 / 64);

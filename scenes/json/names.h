@@ -47,6 +47,8 @@ ISOCHOR_WORDS(SupportTreatment, 3, {SupportTreatment::eliminated, "eliminated"},
 ISOCHOR_WORDS(CableControl, 3, {CableControl::tension, "tension"}, {CableControl::length, "length"},
               {CableControl::length_ratio, "length_ratio"});
 ISOCHOR_WORDS(AnalysisType, 2, {AnalysisType::statics, "static"}, {AnalysisType::dynamics, "dynamic"});
+ISOCHOR_WORDS(Definiteness, 3, {Definiteness::exact, "exact"}, {Definiteness::projected, "projected"},
+              {Definiteness::absolute, "absolute"});
 ISOCHOR_WORDS(Solver, 4, {Solver::automatic, "automatic"}, {Solver::mumps, "mumps"},
               {Solver::cholmod, "cholmod"}, {Solver::eigen, "eigen"});
 ISOCHOR_WORDS(Component, 4, {Component::magnitude, "magnitude"}, {Component::x, "x"}, {Component::y, "y"},

@@ -20,6 +20,53 @@ TEST_CASE("a scrambled cube with volume rows recovers its rest shape") {
   }
 }
 
+// With element Hessians projected from the start all of a hundred seeds come back; 79 is one that ends
+// elsewhere with exact ones on tets.
+TEST_CASE("a scrambled cube with nodal rows recovers its rest shape from wherever, with projected Hessians") {
+  for (const Element element : {Element::hex8, Element::tet4}) {
+    for (const double poisson : {0.49, 0.5}) {
+      const Formulation f{"", element, poisson, true, VolumeSpace::node, Definiteness::projected};
+      for (const unsigned seed : {1u, 2u, 3u, 4u, 5u, 6u, 7u, 79u}) {
+        INFO((element == Element::hex8 ? "hex8" : "tet4") << ", nu = " << poisson << ", seed " << seed);
+        const Outcome o =
+            recover_from(f, 3, 500, [&](std::span<const Vec3> rest) { return scrambled(rest, seed); });
+        INFO(o.report.reason);
+        CHECK(o.recovered());
+      }
+    }
+  }
+}
+
+TEST_CASE("the three policies of element Hessians reach the same twisted shape") {
+  std::vector<double> energies;
+  for (const Definiteness policy : {Definiteness::exact, Definiteness::projected, Definiteness::absolute}) {
+    const Formulation f{"", Element::hex8, 0.49, false, VolumeSpace::node, policy};
+    Cube cube(f, 3, 200);
+    DirichletDef turned;
+    turned.name = "turned";
+    turned.where.body = cube.body;
+    turned.where.surfaces = {"z1"};
+    turned.axis_point = {0.5, 0.5, 0};
+    turned.axis = {0, 0, 1};
+    turned.angle = std::numbers::pi / 2;
+    turned.amount = Curve::ramp(1);
+    must(cube.world.add(dirichlet(turned)));
+    DirichletDef held;
+    held.name = "held";
+    held.where.body = cube.body;
+    held.where.surfaces = {"z0"};
+    must(cube.world.add(dirichlet(held)));
+    const StepReport r = cube.world.step(1);
+    INFO(static_cast<int>(policy) << ": " << r.reason);
+    REQUIRE(r.status == StepStatus::converged);
+    energies.push_back(cube.world.elastic_energy());
+    // Definite from the start: nothing is left to mend.
+    if (policy != Definiteness::exact) CHECK(r.shifted == 0);
+  }
+  CHECK(energies[1] == Approx(energies[0]).epsilon(1e-9));
+  CHECK(energies[2] == Approx(energies[0]).epsilon(1e-9));
+}
+
 TEST_CASE("a crushed or mirrored cube recovers or says that it does not") {
   for (const Formulation& f :
        {Formulation{"hex8, one field", Element::hex8, 0.49, false, VolumeSpace::node},
