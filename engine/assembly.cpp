@@ -289,6 +289,9 @@ void Assembly::kkt_values(double mass_scale, std::span<double> values) const {
       if (i == j) {
         for (int k = 0; k < 3; ++k) block(k, k) += mass_scale * s.parts().mass[at(i)];
       }
+      if (!s.block_mass().empty()) {
+        for (int k = 0; k < 3; ++k) block(k, k) += mass_scale * s.block_mass()[at(d)];
+      }
       to_free_basis(s, i, j, block);
       for (Index c = 0; c < kj; ++c) {
         auto to = static_cast<std::size_t>(s.block_place()[3 * at(d) + at(c)]);
@@ -319,6 +322,17 @@ void Assembly::kkt_values(double mass_scale, std::span<double> values) const {
   }
   for (std::size_t k = 0; k < places.size(); ++k) {
     if (places[k] >= 0) values[static_cast<std::size_t>(places[k])] -= s.compliance()[k].value;
+  }
+}
+
+void Assembly::mass_times(std::span<const Vec3> v, std::span<Vec3> y) const {
+  const System& s = *system_;
+  for (std::size_t i = 0; i < v.size(); ++i) y[i] = s.parts().mass[i] * v[i];
+  for (std::size_t d = 0; d < s.block_mass().size(); ++d) {
+    const auto [i, j] = s.block_nodes()[d];
+    const double m = s.block_mass()[d];
+    y[at(i)] += m * v[at(j)];
+    if (i != j) y[at(j)] += m * v[at(i)];
   }
 }
 

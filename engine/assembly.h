@@ -43,6 +43,9 @@ class Assembly {
   // y = G v over compliant rows.
   void jacobian_times(std::span<const Vec3> v, std::span<double> y) const;
 
+  // y = M v over all nodes.
+  void mass_times(std::span<const Vec3> v, std::span<Vec3> y) const;
+
   // Values of the saddle-point matrix in kkt() order: [K + mass_scale M, G^T; G, -C] (Want::hessian).
   void kkt_values(double mass_scale, std::span<double> values) const;
 

@@ -242,7 +242,18 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
     return Error{"its material has a field of " + std::to_string(fields) + " entries, the mesh of the body " +
                  std::to_string(body.mesh.cell_count()) + " cells; give one entry a cell"};
   }
-  add_lumped_mass(*body.reference, parts_.rest, body.global_cells, region.cells, region.density, parts_.mass);
+  std::vector<double> lumped(consistent_mass_ ? parts_.mass.size() : 0, 0);
+  auto& mass = consistent_mass_ ? lumped : parts_.mass;
+  add_lumped_mass(*body.reference, parts_.rest, body.global_cells, region.cells, region.density, mass);
+  if (consistent_mass_) {
+    add_consistent_mass(*body.reference, parts_.rest, body.global_cells, region.cells, region.density,
+                        parts_.mass_entries);
+    for (Index i = 0; i < static_cast<Index>(lumped.size()); ++i) {
+      if (lumped[at(i)] == 0) continue;
+      parts_.mass[at(i)] += lumped[at(i)];
+      parts_.mass_entries.push_back({i, i, -lumped[at(i)]});
+    }
+  }
   if (smoothed) {
     auto patches = edge_patch_data(parts_.rest, body.global_cells, region.cells);
     if (!patches) return Error{patches.error()};

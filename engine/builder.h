@@ -168,6 +168,8 @@ class Builder {
     if (!slot) slot = std::make_shared<T>();
     return std::static_pointer_cast<T>(slot);
   }
+  // Before build_solids(): inertia by the consistent mass matrix.
+  void use_consistent_mass() { consistent_mass_ = true; }
   void warn(std::string text) { warnings_.push_back(std::move(text)); }
 
   // Merges supports, checks the scene and hands the parts over.
@@ -192,6 +194,7 @@ class Builder {
   std::vector<std::string> warnings_;
   std::map<std::string, std::shared_ptr<void>> shared_;
   Index owner_ = -1;  // effect being built
+  bool consistent_mass_ = false;
 };
 
 }  // namespace isochor

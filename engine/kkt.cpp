@@ -38,7 +38,8 @@ Kkt::Kkt(std::shared_ptr<const System> system, const Parallel& parallel, std::un
   scale_.resize(size);
   rhs_.resize(size);
   solution_.resize(size);
-  if (!s.condensed_rows().empty() || border > 0) row_jacobian_.resize(s.jacobian_ends().size());
+  const bool dual = !s.dual_rows().empty();
+  if (!s.condensed_rows().empty() || border > 0 || dual) row_jacobian_.resize(s.jacobian_ends().size());
   condensed_compliance_.resize(s.condensed_rows().size());
   condensed_part_.resize(s.condensed_rows().size());
   border_solution_.resize(size * border);
@@ -46,6 +47,15 @@ Kkt::Kkt(std::shared_ptr<const System> system, const Parallel& parallel, std::un
   schur_vectors_.resize(border * border);
   border_value_.resize(border);
   border_work_.resize(border);
+  border_rhs_.resize(border);
+  border_kept_.resize(border);
+  if (!dual) return;
+  for (auto* v :
+       {&weight_, &preconditioner_, &active_, &cg_x_, &cg_r_, &cg_z_, &cg_p_, &cg_q_, &cg_work_, &cg_rhs_}) {
+    v->assign(at(s.rows()), 0);
+  }
+  dual_value_.resize(s.dual_compliance().size());
+  matrix_rhs_.resize(size);
 }
 
 double Kkt::compliance_of(const Values& values, std::size_t entry) const {
@@ -77,8 +87,8 @@ void Kkt::scale_unknowns(const Values& values) {
     const Index u = s.row_unknown()[at(r)];
     if (u >= 0) scale_[at(u)] = 1 / std::sqrt(s.row_metric()[at(r)]);
   }
-  if (!s.condensed_rows().empty()) {
-    add_condensed(values);
+  if (!s.filled_rows().empty()) {
+    add_filled(values);
     for (Index c = 0; c < s.free_unknowns(); ++c) {
       const double d = std::abs(values_[static_cast<std::size_t>(s.diagonal_place()[at(c)])]);
       scale_[at(c)] = std::min(scale_[at(c)], d > 0 ? 1 / std::sqrt(d) : 1);
@@ -86,15 +96,18 @@ void Kkt::scale_unknowns(const Values& values) {
   }
 }
 
-// K += G_r^T G_r / C_r for every condensed row, in the order of the rows.
-void Kkt::add_condensed(const Values& values) {
+// K += G_r^T G_r / C_r for every condensed row and G_r^T W_r G_r for every augmented one, in the order of the
+// rows.
+void Kkt::add_filled(const Values& values) {
   const System& s = *system_;
   const auto first = s.first_unknown();
   std::size_t place = 0;
-  for (std::size_t k = 0; k < s.condensed_rows().size(); ++k) {
-    const Index row = s.condensed_rows()[k];
-    const double c = compliance_of(values, s.diagonal_compliance()[at(row)]);
-    condensed_compliance_[k] = c;
+  for (std::size_t k = 0; k < s.filled_rows().size(); ++k) {
+    const Index row = s.filled_rows()[k];
+    const bool condensed = k < s.condensed_rows().size();
+    const double weight =
+        condensed ? 1 / compliance_of(values, s.diagonal_compliance()[at(row)]) : weight_[at(row)];
+    if (condensed) condensed_compliance_[k] = 1 / weight;
     const auto begin = s.row_jacobian_begin()[at(row)], end = s.row_jacobian_begin()[at(row) + 1];
     for (std::size_t a = begin; a < end; ++a) {
       const Index i = s.jacobian_ends()[a][1], ki = first[at(i) + 1] - first[at(i)];
@@ -102,8 +115,8 @@ void Kkt::add_condensed(const Values& values) {
         const Index j = s.jacobian_ends()[b][1], kj = first[at(j) + 1] - first[at(j)];
         for (Index q = 0; q < kj; ++q, ++place) {
           if (ki == 0) continue;
-          auto to = static_cast<std::size_t>(s.condensed_place()[place]);
-          const double factor = row_jacobian_[b][q] / c;
+          auto to = static_cast<std::size_t>(s.filled_place()[place]);
+          const double factor = row_jacobian_[b][q] * weight;
           for (Index p = i == j ? q : 0; p < ki; ++p) values_[to++] += row_jacobian_[a][p] * factor;
         }
       }
@@ -141,7 +154,7 @@ void Kkt::border_column(Index row, std::span<double> column) const {
   }
 }
 
-double Kkt::border_dot(Index row, std::span<const double> v) const {
+double Kkt::row_dot(Index row, std::span<const double> v) const {
   const System& s = *system_;
   const auto first = s.first_unknown();
   double sum = 0;
@@ -152,6 +165,18 @@ double Kkt::border_dot(Index row, std::span<const double> v) const {
     }
   }
   return sum;
+}
+
+// rhs_ += G_r^T multiplier.
+void Kkt::add_row_force(Index row, double multiplier) {
+  const System& s = *system_;
+  const auto first = s.first_unknown();
+  for (auto d = s.row_jacobian_begin()[at(row)]; d < s.row_jacobian_begin()[at(row) + 1]; ++d) {
+    const Index i = s.jacobian_ends()[d][1];
+    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
+      rhs_[at(c)] += scale_[at(c)] * row_jacobian_[d][c - first[at(i)]] * multiplier;
+    }
+  }
 }
 
 // With the matrix A = L D L^T at hand: S = -C_b - B^T A^-1 B, its eigenvectors (it is small and indefinite),
@@ -171,8 +196,7 @@ Kkt::Outcome Kkt::eliminate_border(const Values& values, Outcome outcome) {
       return outcome;
     }
     for (std::size_t j = 0; j < nb; ++j) {
-      schur(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(k)) -=
-          border_dot(s.bordered_rows()[j], z);
+      schur(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(k)) -= row_dot(s.bordered_rows()[j], z);
     }
   }
   for (const auto& [entry, row, col] : s.border_compliance()) {
@@ -214,8 +238,8 @@ Kkt::Outcome Kkt::factor(const Assembly& assembly, const Values& values, StageSe
   const SymmetricPattern& kkt = s.kkt();
   {
     const Stopwatch watch(seconds.gather);
-    // Places that only condensed rows write to have no other owner.
-    if (!s.condensed_rows().empty()) std::fill(values_.begin(), values_.end(), 0.0);
+    // Places that only filled rows write to have no other owner.
+    if (!s.filled_rows().empty()) std::fill(values_.begin(), values_.end(), 0.0);
     assembly.kkt_values(values.mass_scale, values_);
     if (!row_jacobian_.empty()) assembly.row_jacobian(row_jacobian_);
     for (const auto& [index, entry] : s.laws()) {
@@ -241,6 +265,7 @@ Kkt::Outcome Kkt::factor(const Assembly& assembly, const Values& values, StageSe
         }
       }
     }
+    if (!s.dual_rows().empty()) prepare_dual(values);
     scale_unknowns(values);
     parallel_.run(kkt.size, 1024, [&](Index b, Index e) {
       for (Index c = b; c < e; ++c) {
@@ -267,71 +292,52 @@ Kkt::Outcome Kkt::factor(const Assembly& assembly, const Values& values, StageSe
   factor_nonzeros_ = f.factor_nonzeros;
   outcome = {f.status, f.negative_pivots, f.message};
   if (f.status != FactorStatus::ok) return outcome;
-  // A condensed row has its negative pivot in -C, eliminated first.
-  if (outcome.negative >= 0) outcome.negative += static_cast<Index>(s.condensed_rows().size());
+  // A condensed row has its negative pivot in -C, eliminated first; a dual one in its Schur complement, whose
+  // sign is right whenever that of the (augmented) stiffness is.
+  if (outcome.negative >= 0)
+    outcome.negative += static_cast<Index>(s.condensed_rows().size() + s.dual_rows().size());
   return s.bordered_rows().empty() ? outcome : eliminate_border(values, outcome);
 }
 
-bool Kkt::solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs, std::span<Vec3> dx,
-                std::span<double> dlambda, StageSeconds& seconds) {
+// The matrix A with its border, from rhs_ and border_rhs_ to solution_ and border_value_.
+bool Kkt::solve_matrix(StageSeconds& seconds) {
+  const System& s = *system_;
+  const Stopwatch watch(seconds.solve);
+  const SolveReport solved = solver_->solve(rhs_, solution_);
+  residual_ = std::max(residual_, solved.residual);
+  const std::size_t nb = s.bordered_rows().size(), size = at(s.kkt().size);
+  if (nb == 0) return solved.ok;
+  // dlambda_b = S^-1 (g_b - B^T A^-1 f), u = A^-1 f - A^-1 B dlambda_b.
+  for (std::size_t j = 0; j < nb; ++j)
+    border_work_[j] = border_rhs_[j] - row_dot(s.bordered_rows()[j], solution_);
+  for (std::size_t j = 0; j < nb; ++j) {
+    double sum = 0;
+    for (std::size_t k = 0; k < nb; ++k) sum += schur_vectors_[k * nb + j] * border_work_[k];
+    border_value_[j] = sum;
+  }
+  for (std::size_t j = 0; j < nb; ++j) {
+    const double* const z = border_solution_.data() + j * size;
+    for (std::size_t i = 0; i < size; ++i) solution_[i] -= z[i] * border_value_[j];
+  }
+  return solved.ok;
+}
+
+// Forces of all nodes into the displacement part of rhs_, in free directions and scaled.
+void Kkt::to_unknowns(std::span<const Vec3> node_rhs) {
   const System& s = *system_;
   const auto first = s.first_unknown();
-  const auto condensed = s.condensed_rows(), bordered = s.bordered_rows();
   for (Index i = 0; i < s.nodes(); ++i) {
     Vec3 q = node_rhs[at(i)];
     const Index b = s.basis_of()[at(i)];
     if (b >= 0) q = transposed_times(s.free_bases()[at(b)].directions, q);
     for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) rhs_[at(c)] = scale_[at(c)] * q[c - first[at(i)]];
   }
-  for (Index r = 0; r < s.rows(); ++r) {
-    const Index u = s.row_unknown()[at(r)];
-    if (u >= 0) rhs_[at(u)] = scale_[at(u)] * row_rhs[at(r)];
-  }
-  // G dx - C dlambda = g: dlambda = (G dx - g) / C, so G^T g / C joins the right-hand side of the nodes.
-  for (std::size_t k = 0; k < condensed.size(); ++k) {
-    condensed_part_[k] = row_rhs[at(condensed[k])] / condensed_compliance_[k];
-    for (auto d = s.row_jacobian_begin()[at(condensed[k])]; d < s.row_jacobian_begin()[at(condensed[k]) + 1];
-         ++d) {
-      const Index i = s.jacobian_ends()[d][1];
-      for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
-        rhs_[at(c)] += scale_[at(c)] * row_jacobian_[d][c - first[at(i)]] * condensed_part_[k];
-      }
-    }
-  }
-  SolveReport solved;
-  {
-    const Stopwatch watch(seconds.solve);
-    solved = solver_->solve(rhs_, solution_);
-  }
-  residual_ = solved.residual;
-  const std::size_t nb = bordered.size(), size = at(s.kkt().size);
-  if (nb > 0) {
-    // dlambda_b = S^-1 (g_b - B^T A^-1 f), u = A^-1 f - A^-1 B dlambda_b.
-    for (std::size_t j = 0; j < nb; ++j) {
-      border_work_[j] = row_rhs[at(bordered[j])] - border_dot(bordered[j], solution_);
-    }
-    for (std::size_t j = 0; j < nb; ++j) {
-      double sum = 0;
-      for (std::size_t k = 0; k < nb; ++k) sum += schur_vectors_[k * nb + j] * border_work_[k];
-      border_value_[j] = sum;
-      dlambda[at(bordered[j])] = sum;
-    }
-    for (std::size_t j = 0; j < nb; ++j) {
-      const double* const z = border_solution_.data() + j * size;
-      for (std::size_t i = 0; i < size; ++i) solution_[i] -= z[i] * border_value_[j];
-    }
-  }
-  for (std::size_t k = 0; k < condensed.size(); ++k) {
-    double sum = 0;
-    for (auto d = s.row_jacobian_begin()[at(condensed[k])]; d < s.row_jacobian_begin()[at(condensed[k]) + 1];
-         ++d) {
-      const Index i = s.jacobian_ends()[d][1];
-      for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
-        sum += scale_[at(c)] * row_jacobian_[d][c - first[at(i)]] * solution_[at(c)];
-      }
-    }
-    dlambda[at(condensed[k])] = sum / condensed_compliance_[k] - condensed_part_[k];
-  }
+}
+
+// The displacement part of solution_ as steps of all nodes.
+void Kkt::to_nodes(std::span<Vec3> dx) const {
+  const System& s = *system_;
+  const auto first = s.first_unknown();
   for (Index i = 0; i < s.nodes(); ++i) {
     Vec3 q{};
     for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c)
@@ -339,11 +345,37 @@ bool Kkt::solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs,
     const Index b = s.basis_of()[at(i)];
     dx[at(i)] = b >= 0 ? s.free_bases()[at(b)].directions * q : q;
   }
+}
+
+bool Kkt::solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs, std::span<Vec3> dx,
+                std::span<double> dlambda, StageSeconds& seconds) {
+  const System& s = *system_;
+  const auto condensed = s.condensed_rows(), bordered = s.bordered_rows();
+  to_unknowns(node_rhs);
+  for (Index r = 0; r < s.rows(); ++r) {
+    const Index u = s.row_unknown()[at(r)];
+    if (u >= 0) rhs_[at(u)] = scale_[at(u)] * row_rhs[at(r)];
+  }
+  residual_ = 0;
+  // G dx - C dlambda = g: dlambda = (G dx - g) / C, so G^T g / C joins the right-hand side of the nodes.
+  for (std::size_t k = 0; k < condensed.size(); ++k) {
+    condensed_part_[k] = row_rhs[at(condensed[k])] / condensed_compliance_[k];
+    add_row_force(condensed[k], condensed_part_[k]);
+  }
+  for (std::size_t j = 0; j < bordered.size(); ++j) border_rhs_[j] = row_rhs[at(bordered[j])];
+  const bool ok = s.dual_rows().empty() ? solve_matrix(seconds) : solve_dual(row_rhs, seconds);
+  for (std::size_t j = 0; j < bordered.size(); ++j) dlambda[at(bordered[j])] = border_value_[j];
+  for (const Index r : s.dual_rows()) dlambda[at(r)] = cg_x_[at(r)];
+  for (std::size_t k = 0; k < condensed.size(); ++k) {
+    const double sum = row_dot(condensed[k], solution_);
+    dlambda[at(condensed[k])] = sum / condensed_compliance_[k] - condensed_part_[k];
+  }
+  to_nodes(dx);
   for (Index r = 0; r < s.rows(); ++r) {
     const Index u = s.row_unknown()[at(r)];
     if (u >= 0) dlambda[at(r)] = scale_[at(u)] * solution_[at(u)];
   }
-  return solved.ok;
+  return ok;
 }
 
 }  // namespace isochor

@@ -1,6 +1,7 @@
 // The linear systems of Newton's method: matrix of the saddle point, scaled and factored; right-hand sides
 // in, steps of positions and multipliers out. Rows come in as they are treated: kept in the matrix, condensed
-// into the stiffness (their compliance is invertible), or bordered (eliminated around the factorization).
+// into the stiffness (their compliance is invertible), bordered (eliminated around the factorization) or dual
+// (conjugate gradients on their multipliers around the factorization).
 #pragma once
 
 #include "engine/assembly.h"
@@ -51,18 +52,43 @@ class Kkt {
   bool solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs, std::span<Vec3> dx,
              std::span<double> dlambda, StageSeconds& seconds);
 
+  // For systems whose rows are all dual. Weights W of the augmentation, one a row, for given values; then,
+  // with the matrix factored: dx = A^-1 node_rhs, and q = T^T (C + G A^-1 G^T T) p as kkt_dual.cpp has it.
+  std::span<const double> dual_weights(const Values& values) {
+    prepare_dual(values);
+    return weight_;
+  }
+  bool solve_stiffness(std::span<const Vec3> node_rhs, std::span<Vec3> dx, StageSeconds& seconds);
+  bool apply_dual(std::span<const double> p, std::span<double> q, StageSeconds& seconds);
+  // v becomes T^T v.
+  void weigh_transposed(std::span<double> v);
+  std::span<const double> dual_preconditioner() const { return preconditioner_; }
+
   LinearSolver& linear_solver() { return *solver_; }
   double residual() const { return residual_; }  // of the last solve, relative
+  // Conjugate-gradient iterations on dual rows so far; each is one solve.
+  std::int64_t dual_iterations() const { return dual_iterations_; }
+  // Relative residual at which they end, in the norm of the preconditioner.
+  double dual_tolerance = 1e-8;
+  int dual_iteration_limit = 500;
   std::int64_t factor_nonzeros() const { return factor_nonzeros_; }
   int analyses() const { return analyses_; }
 
  private:
   void scale_unknowns(const Values& values);
-  void add_condensed(const Values& values);
   void add_trace(double trace);
+  void add_filled(const Values& values);
+  void prepare_dual(const Values& values);
+  bool solve_matrix(StageSeconds& seconds);
+  bool solve_dual(std::span<const double> row_rhs, StageSeconds& seconds);
+  void to_unknowns(std::span<const Vec3> node_rhs);
+  void to_nodes(std::span<Vec3> dx) const;
+  void weigh(std::span<const double> v, std::span<double> out) const;
+  void add_dual_compliance(double alpha, std::span<const double> v, std::span<double> y) const;
+  void add_row_force(Index row, double multiplier);
+  double row_dot(Index row, std::span<const double> v) const;
   Outcome eliminate_border(const Values& values, Outcome outcome);
   void border_column(Index row, std::span<double> column) const;
-  double border_dot(Index row, std::span<const double> v) const;
   double compliance_of(const Values& values, std::size_t entry) const;
 
   std::shared_ptr<const System> system_;
@@ -73,11 +99,17 @@ class Kkt {
   bool analyzed_ = false;
   double residual_ = 0;
   std::vector<double> values_, scale_, rhs_, solution_;
-  // Rows outside the matrix: their Jacobian in free directions, their compliance (condensed) and, for the
+  // Rows outside the matrix: their Jacobian in free directions, the compliance of condensed ones and, for the
   // border, A^-1 B and the factored Schur complement.
   std::vector<Vec3> row_jacobian_;
   std::vector<double> condensed_compliance_, condensed_part_;
-  std::vector<double> border_solution_, schur_, schur_vectors_, border_value_, border_work_;
+  std::vector<double> border_solution_, schur_, schur_vectors_, border_value_, border_work_, border_rhs_,
+      border_kept_;
+  // Dual rows, over all rows: weights W of the augmentation, compliance values, preconditioner, 1 where a row
+  // takes part, and the vectors of the iteration.
+  std::int64_t dual_iterations_ = 0;
+  std::vector<double> weight_, dual_value_, preconditioner_, active_;
+  std::vector<double> cg_x_, cg_r_, cg_z_, cg_p_, cg_q_, cg_work_, cg_rhs_, matrix_rhs_;
 };
 
 }  // namespace isochor

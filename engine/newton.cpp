@@ -30,7 +30,6 @@ Newton::Newton(std::shared_ptr<const System> system, const Parallel& parallel,
   x_trial_.resize(n);
   reaction_.resize(n);
   if (s.has_bounds()) {
-    clamped_.assign(m, 0);
     bound_.assign(m, 0);
     to_bound_.assign(m, 0);
   }
@@ -55,69 +54,13 @@ void Newton::choose_clamped(std::span<const double> lambda, bool first) {
   }
 }
 
-// Assembles and factors; mends a wrong inertia by a shift of the displacement block, small at first, and when
-// that grows out of proportion by the stencils' projected Hessians.
-bool Newton::factor(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
-                    SaddleReport& report) {
-  if (factor_shifted(p.mass_scale, 0, report)) return true;
-  if (report.status == SaddleStatus::out_of_memory) return false;
-  // Several bounded rows may ask the same of the same nodes (two obstacles side by side): then their
-  // multipliers are not unique, and a trace of compliance picks some. It slows the iteration by as little.
-  if (system_->has_bounds() && singular_ && trace_ == 0) {
-    trace_ = 1e-8;
-    if (factor_shifted(p.mass_scale, 0, report)) return true;
-    if (report.status == SaddleStatus::out_of_memory) return false;
-  }
-  ++report.shifted;
-  // Starting from a third of what the last wrong inertia took finds the size in one or two trials.
-  double shift = shift_ > 0 ? std::max(1e-4, shift_ / 3) : 1e-3;
-  for (; shift < 1; shift *= 6) {
-    if (factor_shifted(p.mass_scale, shift, report)) {
-      shift_ = shift;
-      return true;
-    }
-    if (report.status == SaddleStatus::out_of_memory) return false;
-  }
-  {
-    const Stopwatch watch(seconds_.evaluate);
-    assembly_.evaluate(Want::hessian, std::max(definiteness_, Definiteness::projected), x, lambda,
-                       p.prescribed);
-  }
-  ++report.projected;
-  for (shift = 0; shift < 1e3; shift = std::max(1e-3, 30 * shift)) {
-    if (factor_shifted(p.mass_scale, shift, report)) return true;
-    if (report.status == SaddleStatus::out_of_memory) return false;
-  }
-  report.status = SaddleStatus::singular;
-  return false;
-}
-
-bool Newton::factor_shifted(double mass_scale, double shift, SaddleReport& report) {
-  Kkt::Values values;
-  values.mass_scale = mass_scale;
-  values.shift = shift;
-  values.stiffness = stiffness_;
-  values.tangent = tangent_;
-  if (any_clamped_) values.clamped = clamped_;
-  values.trace = trace_;
-  const Kkt::Outcome f = kkt_.factor(assembly_, values, seconds_);
-  singular_ = f.status == FactorStatus::singular;
-  ++report.factorizations;
-  report.negative_pivots = f.negative;
-  if (f.status == FactorStatus::out_of_memory) report.status = SaddleStatus::out_of_memory;
-  if (f.status != FactorStatus::ok) {
-    report.message = f.message;
-    return false;
-  }
-  return f.negative < 0 || f.negative == system_->rows();
-}
-
 // Solves for (dx, dlambda); prescribed coordinates move by their whole gap, multipliers held at a bound by
 // the rest of their way there.
 bool Newton::direction(std::span<const double> lambda, SaddleReport& report) {
   const System& s = *system_;
   if (has_gap_) {
     assembly_.hessian_times(gap_, node_work_);
+    add_inertia_of_gap(node_work_);
     assembly_.jacobian_times(gap_, row_work_);
   } else {
     std::fill(node_work_.begin(), node_work_.end(), Vec3{});
@@ -138,7 +81,9 @@ bool Newton::direction(std::span<const double> lambda, SaddleReport& report) {
     }
   }
   for (std::size_t i = 0; i < r_.size(); ++i) node_rhs_[i] = -(r_[i] + node_work_[i]);
+  const std::int64_t before = kkt_.dual_iterations();
   const bool ok = kkt_.solve(node_rhs_, row_rhs_, dx_, lambda_new_, seconds_);
+  report.dual_iterations += kkt_.dual_iterations() - before;
   report.linear_residual = kkt_.residual();
   for (std::size_t i = 0; i < dx_.size(); ++i) dx_[i] += gap_[i];
   for (std::size_t r = 0; r < theta_.size(); ++r) lambda_new_[r] += lambda[r];
@@ -317,16 +262,10 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     return report;
   };
   if (!all_finite(p)) return fail(SaddleStatus::not_finite);
-  assembly_.set_increment(p.increment, p.memory);
+  begin(p);
   definiteness_ = options.definiteness;
   gamma_ = 0.1;
-  shift_ = 0;
-  trace_ = 0;
-  for (std::size_t i = 0; i < stiffness_.size(); ++i) {
-    stiffness_[i] = rest_stiffness_[i] + p.mass_scale * system_->parts().mass[i];
-  }
   const System& s = *system_;
-  any_clamped_ = false;
   clamp(lambda);
   const Vec3 origin = s.nodes() > 0 ? s.parts().rest[0] : Vec3{};
   for (int iteration = 0;; ++iteration) {

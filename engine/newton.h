@@ -25,33 +25,29 @@ class Newton : public SaddlePoint {
   SaddleReport solve(const SaddleProblem& problem, const SaddleOptions& options, std::span<Vec3> x,
                      std::span<double> lambda) override;
 
+ protected:
+  void choose_clamped(std::span<const double> lambda, bool first);
+  bool direction(std::span<const double> lambda, SaddleReport& report);
+
+  std::vector<double> lambda_new_, lambda_trial_;
+  std::vector<Vec3> dx_, x_trial_;
+
  private:
   void keep_multipliers(const SaddleProblem& p, std::span<const Vec3> x, std::span<double> lambda);
-  void choose_clamped(std::span<const double> lambda, bool first);
   bool correct(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                std::span<double> lambda, SaddleReport& report);
-  bool factor(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
-              SaddleReport& report);
-  bool factor_shifted(double mass_scale, double shift, SaddleReport& report);
-  bool direction(std::span<const double> lambda, SaddleReport& report);
   double merit(const SaddleProblem& p, double tau, std::span<const double> lambda) const;
   double merit_slope(std::span<const double> lambda);
   double try_step(const SaddleProblem& p, double tau, std::span<const Vec3> x, std::span<const double> lambda,
                   SaddleReport& report);
   bool search(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda, SaddleReport& report);
 
-  bool full_step_ = false, any_clamped_ = false, singular_ = false;
-  Definiteness definiteness_ = Definiteness::exact;
-  double trace_ = 0;    // of compliance in the matrix, where rows repeat each other
-  double shift_ = 0;    // the last one that mended the inertia in this solve
+  bool full_step_ = false;
   double gamma_ = 0.1;  // more would follow the volume too closely, less would lose descent; raised as needed
 
-  std::vector<double> row_work_, row_rhs_, lambda_new_, lambda_trial_;
-  // Rows with bounds: which of them the matrix holds at a bound, and by how much their multipliers move
-  // there.
-  std::vector<double> bound_, to_bound_;
-  std::vector<std::uint8_t> clamped_;
-  std::vector<Vec3> dx_, node_work_, node_rhs_, x_trial_, reaction_;
+  std::vector<double> row_work_, row_rhs_;
+  std::vector<double> bound_, to_bound_;  // rows with bounds: the bound, and how far away it is
+  std::vector<Vec3> node_work_, node_rhs_, reaction_;
 };
 
 }  // namespace isochor

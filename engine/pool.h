@@ -207,6 +207,12 @@ class LoadPool {
   virtual void add(double t, std::span<Vec3> force) const = 0;  // adds newtons to all nodes of the scene
 };
 
+// An entry of the mass matrix beside the lumped masses, the same for the three coordinates.
+struct MassEntry {
+  Index row = 0, col = 0;  // nodes, row >= col
+  double value = 0;        // [kg]
+};
+
 // A named number that an effect reports beside the state (a chamber's pressure and volume).
 struct GaugeValue {
   std::string effect, kind, quantity, unit;

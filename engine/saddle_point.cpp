@@ -56,6 +56,17 @@ std::string_view to_string(SaddleStatus status) {
   return "unknown";
 }
 
+void SaddleReport::add_work(const SaddleReport& earlier) {
+  iterations += earlier.iterations;
+  factorizations += earlier.factorizations;
+  trials += earlier.trials;
+  corrections += earlier.corrections;
+  projected += earlier.projected;
+  shifted += earlier.shifted;
+  dual_steps += earlier.dual_steps;
+  dual_iterations += earlier.dual_iterations;
+}
+
 SaddlePoint::SaddlePoint(std::shared_ptr<const System> system, const Parallel& parallel,
                          std::unique_ptr<LinearSolver> solver)
     : system_(std::move(system)), assembly_(system_, parallel), kkt_(system_, parallel, std::move(solver)) {
@@ -68,10 +79,13 @@ SaddlePoint::SaddlePoint(std::shared_ptr<const System> system, const Parallel& p
   stiffness_.resize(n);
   r_.resize(n);
   gap_.resize(n);
+  way_.resize(n);
+  inertia_.resize(n);
   if (!s.laws().empty()) {
     strain_.resize(m);
     tangent_.resize(s.compliance().size());
   }
+  if (s.has_bounds()) clamped_.assign(m, 0);
   calibrate();
 }
 
@@ -114,18 +128,11 @@ void SaddlePoint::calibrate() {
 }
 
 double SaddlePoint::potential(const SaddleProblem& p, std::span<const Vec3> x) const {
-  const System& s = *system_;
-  double inertia = 0, work = 0, given = 0;
-  const auto& rest = s.parts().rest;
+  double work = 0, given = 0;
+  const auto& rest = system_->parts().rest;
   for (std::size_t i = 0; i < x.size(); ++i) work += dot(p.force[i], x[i] - rest[i]);
-  if (p.mass_scale > 0) {
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      const Vec3 d = x[i] - p.predicted[i];
-      inertia += s.parts().mass[i] * dot(d, d);
-    }
-  }
   for (std::size_t r = 0; r < prescribed_phi_.size(); ++r) given += p.prescribed[r] * prescribed_phi_[r];
-  return assembly_.energy() + 0.5 * p.mass_scale * inertia - work + given;
+  return assembly_.energy() + inertia_energy_ - work + given;
 }
 
 // Size of the numbers that cancel in the potential: what its rounding error is relative to.
@@ -149,33 +156,51 @@ double SaddlePoint::potential_magnitude(const SaddleProblem& p, std::span<const 
   return sum;
 }
 
-// Residuals of the last evaluation: r = dE/dx + G^T lambda over all nodes, theta = phi - target - C lambda.
-void SaddlePoint::assemble_residual(const SaddleProblem& p, std::span<const Vec3> x,
-                                    std::span<const double> lambda) {
-  const System& s = *system_;
+void SaddlePoint::begin(const SaddleProblem& p) {
+  assembly_.set_increment(p.increment, p.memory);
+  shift_ = 0;
+  trace_ = 0;
+  any_clamped_ = false;
+  mass_scale_ = p.mass_scale;
+  for (std::size_t i = 0; i < stiffness_.size(); ++i) {
+    stiffness_[i] = rest_stiffness_[i] + p.mass_scale * system_->parts().mass[i];
+  }
+}
+
+// Of the last evaluation: r = dE/dx + G^T lambda over all nodes.
+void SaddlePoint::force_residual(const SaddleProblem& p, std::span<const Vec3> x) {
   assembly_.residual(r_);
   assembly_.residual_magnitude(magnitude_);
   for (std::size_t i = 0; i < r_.size(); ++i) {
     r_[i] -= p.force[i];
     magnitude_[i] += norm(p.force[i]);
-    if (p.mass_scale > 0) {
-      const double c = p.mass_scale * s.parts().mass[i];
-      const Vec3 f = c * (x[i] - p.predicted[i]);
+  }
+  inertia_energy_ = 0;
+  if (p.mass_scale > 0) {
+    for (std::size_t i = 0; i < r_.size(); ++i) way_[i] = x[i] - p.predicted[i];
+    assembly_.mass_times(way_, inertia_);
+    for (std::size_t i = 0; i < r_.size(); ++i) {
+      const Vec3 f = p.mass_scale * inertia_[i];
+      inertia_energy_ += 0.5 * dot(f, way_[i]);
       r_[i] += f;
       magnitude_[i] += norm(f);
     }
   }
+  assembly_.prescribed_row_values(prescribed_phi_);
+}
+
+// Of the last evaluation: theta = phi - target - C lambda.
+void SaddlePoint::row_residual(const SaddleProblem& p, std::span<const double> lambda) {
+  const System& s = *system_;
   assembly_.row_values(theta_);
   for (std::size_t r = 0; r < theta_.size(); ++r) theta_[r] -= p.target[r];
   add_compliance(s, -1, lambda, theta_);
-  if (!s.laws().empty()) {
-    law_energy_ = apply_laws(p, lambda, false);
-    for (const auto& law : s.laws()) {
-      const auto first = s.first_row(law.row_pool), rows = s.parts().row_pools[at(law.row_pool)]->rows();
-      for (Index r = first; r < first + rows; ++r) theta_[at(r)] -= strain_[at(r)];
-    }
+  if (s.laws().empty()) return;
+  law_energy_ = apply_laws(p, lambda, false);
+  for (const auto& law : s.laws()) {
+    const auto first = s.first_row(law.row_pool), rows = s.parts().row_pools[at(law.row_pool)]->rows();
+    for (Index r = first; r < first + rows; ++r) theta_[at(r)] -= strain_[at(r)];
   }
-  assembly_.prescribed_row_values(prescribed_phi_);
 }
 
 SaddlePoint::Residuals SaddlePoint::measure(const SaddleProblem& p, std::span<const Vec3> x,
@@ -234,6 +259,12 @@ bool SaddlePoint::balanced(const SaddleProblem& p, const SaddleOptions& o, std::
   return r.force <= o.force_tolerance && r.row <= o.row_tolerance && r.position <= o.position_tolerance;
 }
 
+void SaddlePoint::add_inertia_of_gap(std::span<Vec3> y) {
+  if (system_->block_mass().empty() || mass_scale_ == 0) return;
+  assembly_.mass_times(gap_, inertia_);
+  for (std::size_t i = 0; i < y.size(); ++i) y[i] += mass_scale_ * inertia_[i];
+}
+
 void SaddlePoint::position_gap(const SaddleProblem& p, std::span<const Vec3> x) {
   has_gap_ = false;
   const System& s = *system_;
@@ -248,6 +279,63 @@ void SaddlePoint::position_gap(const SaddleProblem& p, std::span<const Vec3> x) 
     gap_[at(i)] = basis.directions * q;
     if (dot(gap_[at(i)], gap_[at(i)]) > 0) has_gap_ = true;
   }
+}
+
+// Assembles and factors; mends a wrong inertia by a shift of the displacement block, small at first, and when
+// that grows out of proportion by the stencils' projected Hessians.
+bool SaddlePoint::factor(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
+                         SaddleReport& report) {
+  if (factor_shifted(p.mass_scale, 0, report)) return true;
+  if (report.status == SaddleStatus::out_of_memory) return false;
+  // Several bounded rows may ask the same of the same nodes (two obstacles side by side): then their
+  // multipliers are not unique, and a trace of compliance picks some. It slows the iteration by as little.
+  if (system_->has_bounds() && singular_ && trace_ == 0) {
+    trace_ = 1e-8;
+    if (factor_shifted(p.mass_scale, 0, report)) return true;
+    if (report.status == SaddleStatus::out_of_memory) return false;
+  }
+  ++report.shifted;
+  // Starting from a third of what the last wrong inertia took finds the size in one or two trials.
+  double shift = shift_ > 0 ? std::max(1e-4, shift_ / 3) : 1e-3;
+  for (; shift < 1; shift *= 6) {
+    if (factor_shifted(p.mass_scale, shift, report)) {
+      shift_ = shift;
+      return true;
+    }
+    if (report.status == SaddleStatus::out_of_memory) return false;
+  }
+  {
+    const Stopwatch watch(seconds_.evaluate);
+    assembly_.evaluate(Want::hessian, std::max(definiteness_, Definiteness::projected), x, lambda,
+                       p.prescribed);
+  }
+  ++report.projected;
+  for (shift = 0; shift < 1e3; shift = std::max(1e-3, 30 * shift)) {
+    if (factor_shifted(p.mass_scale, shift, report)) return true;
+    if (report.status == SaddleStatus::out_of_memory) return false;
+  }
+  report.status = SaddleStatus::singular;
+  return false;
+}
+
+bool SaddlePoint::factor_shifted(double mass_scale, double shift, SaddleReport& report) {
+  Kkt::Values values;
+  values.mass_scale = mass_scale;
+  values.shift = shift;
+  values.stiffness = stiffness_;
+  values.tangent = tangent_;
+  if (any_clamped_) values.clamped = clamped_;
+  values.trace = trace_;
+  const Kkt::Outcome f = kkt_.factor(assembly_, values, seconds_);
+  singular_ = f.status == FactorStatus::singular;
+  ++report.factorizations;
+  report.negative_pivots = f.negative;
+  if (f.status == FactorStatus::out_of_memory) report.status = SaddleStatus::out_of_memory;
+  if (f.status != FactorStatus::ok) {
+    report.message = f.message;
+    return false;
+  }
+  return f.negative < 0 || f.negative == system_->rows();
 }
 
 }  // namespace isochor

@@ -51,12 +51,17 @@ std::string_view to_string(SaddleStatus status);
 struct SaddleReport {
   SaddleStatus status = SaddleStatus::converged;
   int iterations = 0, factorizations = 0, trials = 0;
-  int corrections = 0;             // further steps on factors at hand
-  int projected = 0, shifted = 0;  // iterations mended by projection and by a diagonal shift
-  Index negative_pivots = -1;      // of the last factorisation; rows() when the inertia is right
+  int corrections = 0;               // further steps on factors at hand
+  int projected = 0, shifted = 0;    // iterations mended by projection and by a diagonal shift
+  int dual_steps = 0;                // of dual ascent
+  std::int64_t dual_iterations = 0;  // of conjugate gradients on multipliers
+  Index negative_pivots = -1;        // of the last factorisation; rows() when the inertia is right
   double force_residual = 0, row_residual = 0, linear_residual = 0;
   double step = 0;  // largest displacement of the last step [m]
   std::string message;
+
+  // Counts the work of an earlier solve of the same step in.
+  void add_work(const SaddleReport& earlier);
 };
 
 class SaddlePoint {
@@ -80,6 +85,8 @@ class SaddlePoint {
   const StageSeconds& seconds() const { return seconds_; }
   std::int64_t factor_nonzeros() const { return kkt_.factor_nonzeros(); }
   int analyses() const { return kkt_.analyses(); }
+  // Largest diagonal stiffness of each node at rest [N/m].
+  std::span<const double> rest_stiffness() const { return rest_stiffness_; }
   // Internal minus load forces, plus inertia, at the last evaluation: zero at free coordinates in balance,
   // the support force on the body at given ones [N].
   std::span<const Vec3> residual() const { return r_; }
@@ -90,26 +97,43 @@ class SaddlePoint {
   };
   // The following but calibrate() read the last evaluation of the assembly.
   void calibrate();
+  void begin(const SaddleProblem& p);  // of a solve: nothing of an earlier one is left
   double potential(const SaddleProblem& p, std::span<const Vec3> x) const;
   double potential_magnitude(const SaddleProblem& p, std::span<const Vec3> x) const;
-  void assemble_residual(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda);
+  void assemble_residual(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda) {
+    force_residual(p, x);
+    row_residual(p, lambda);
+  }
+  void force_residual(const SaddleProblem& p, std::span<const Vec3> x);
+  void row_residual(const SaddleProblem& p, std::span<const double> lambda);
   Residuals measure(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda) const;
   bool balanced(const SaddleProblem& p, const SaddleOptions& o, std::span<const Vec3> x,
                 std::span<const double> lambda, SaddleReport& report) const;
   double apply_laws(const SaddleProblem& p, std::span<const double> lambda, bool tangents);
   void clamp(std::span<double> lambda) const;
+  bool factor(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
+              SaddleReport& report);
+  bool factor_shifted(double mass_scale, double shift, SaddleReport& report);
+  // y += mass_scale M gap: the lumped part of it falls on given directions alone and is left out.
+  void add_inertia_of_gap(std::span<Vec3> y);
   void position_gap(const SaddleProblem& p, std::span<const Vec3> x);
 
   std::shared_ptr<const System> system_;
   Assembly assembly_;
   Kkt kkt_;
   StageSeconds seconds_;
-  bool has_gap_ = false;   // given coordinates that are not at their targets yet
-  double law_energy_ = 0;  // of the rows with a law of their own, at the last residual
+  bool any_clamped_ = false, singular_ = false;
+  double trace_ = 0;  // of compliance in the matrix, where rows repeat each other
+  double mass_scale_ = 0;      // of this solve
+  double shift_ = 0;           // the last one that mended the inertia in this solve
+  bool has_gap_ = false;       // given coordinates that are not at their targets yet
+  double inertia_energy_ = 0;  // at the last force residual
+  double law_energy_ = 0;      // of the rows with a law of their own, at the last residual
   std::vector<double> theta_, stiffness_, magnitude_, rest_stiffness_, prescribed_phi_;
   // Rows with laws: strain and tangent (one for each compliance entry).
   std::vector<double> strain_, tangent_;
-  std::vector<Vec3> r_, gap_;
+  std::vector<std::uint8_t> clamped_;  // rows that the matrix holds at a bound
+  std::vector<Vec3> r_, gap_, way_, inertia_;
 };
 
 inline double norm(const Vec3& v) {

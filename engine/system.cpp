@@ -1,9 +1,9 @@
-#include "engine/system.h"
-
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "engine/row_treatment.h"
 
 namespace isochor {
 
@@ -62,7 +62,7 @@ class SystemCompiler {
     gather_jacobian();
     collect_compliance();
     collect_bounds_and_memory();
-    if (auto r = treat_rows(); !r) return Error{r.error()};
+    if (auto r = RowTreatments(*s_).sort(); !r) return Error{r.error()};
     build_kkt();
     locate_entries();
     group_unknowns();
@@ -247,6 +247,23 @@ class SystemCompiler {
       s_->block_nodes_.push_back({i, i});
       s_->block_gather_.offset.push_back(s_->block_gather_.offset.back());
     }
+    place_mass();
+  }
+
+  // The stencils of a solid couple every pair of nodes that share a cell, so each entry has its block.
+  void place_mass() {
+    auto& entries = s_->parts_.mass_entries;
+    if (entries.empty()) return;
+    std::vector<std::pair<std::uint64_t, std::size_t>> blocks;
+    for (std::size_t d = 0; d < s_->block_nodes_.size(); ++d)
+      blocks.push_back({key_of(s_->block_nodes_[d][0], s_->block_nodes_[d][1]), d});
+    std::sort(blocks.begin(), blocks.end());
+    s_->block_mass_.assign(s_->block_nodes_.size(), 0);
+    for (const MassEntry& e : entries) {
+      const auto found =
+          std::lower_bound(blocks.begin(), blocks.end(), std::pair(key_of(e.row, e.col), std::size_t{0}));
+      s_->block_mass_[found->second] += e.value;
+    }
   }
 
   void gather_jacobian() {
@@ -313,103 +330,6 @@ class SystemCompiler {
     }
   }
 
-  // A pool that is left to us is condensed when that fills no new place and loses no digits: every row lies
-  // within one stencil and has a compliance of its own that is not tiny. Everything else is kept; the
-  // ordering puts rows over everything last, which costs what a border does.
-  RowTreatment choose(const RowPool& pool) const {
-    constexpr double smallest = 1e-6;  // compliance against the row metric: mu / kappa for volume rows
-    if (pool.treatment != RowTreatment::automatic) return pool.treatment;
-    if (pool.rows() == 0 || !pool.lower.empty() || !pool.upper.empty() || !check_condensed(pool, "")) {
-      return RowTreatment::saddle;
-    }
-    const Index functions = s_->parts_.stencil_pools[at(pool.stencil_pool)]->functions();
-    for (Index r = 0; r < pool.rows(); ++r) {
-      for (const Index f : pool.map[r]) {
-        if (f / functions != pool.map[r][0] / functions) return RowTreatment::saddle;
-      }
-    }
-    for (const ComplianceEntry& e : pool.compliance) {
-      if (e.value < smallest * pool.metric[at(e.row)]) return RowTreatment::saddle;
-    }
-    return RowTreatment::condensed;
-  }
-
-  // Which rows are unknowns of the matrix.
-  Result<void> treat_rows() {
-    constexpr Index border_limit = 64;
-    s_->row_unknown_.assign(at(s_->rows_), -1);
-    s_->diagonal_compliance_.assign(at(s_->rows_), 0);
-    for (std::size_t k = 0; k < s_->compliance_.size(); ++k) {
-      const ComplianceEntry& e = s_->compliance_[k];
-      if (e.row == e.col) s_->diagonal_compliance_[at(e.row)] = k;
-    }
-    s_->row_jacobian_begin_.assign(at(s_->rows_) + 1, 0);
-    for (const auto& [row, node] : s_->jacobian_ends_) ++s_->row_jacobian_begin_[at(row) + 1];
-    for (std::size_t r = 0; r < at(s_->rows_); ++r)
-      s_->row_jacobian_begin_[r + 1] += s_->row_jacobian_begin_[r];
-    for (std::size_t p = 0; p < s_->parts_.row_pools.size(); ++p) {
-      const RowPool& pool = *s_->parts_.row_pools[p];
-      if (pool.law != RowLaw::compliant) continue;
-      const std::string who = "rows \"" + std::string(pool.name()) + "\": ";
-      const bool out = pool.treatment == RowTreatment::condensed || pool.treatment == RowTreatment::bordered;
-      if (out && (!pool.lower.empty() || !pool.upper.empty())) {
-        return Error{who +
-                     "rows with bounds change between free and held, so they stay in the saddle point; use "
-                     "treatment saddle or automatic"};
-      }
-      if (pool.treatment == RowTreatment::condensed) {
-        if (auto r = check_condensed(pool, who); !r) return r;
-      }
-      if (pool.treatment == RowTreatment::bordered &&
-          static_cast<Index>(s_->bordered_rows_.size()) + pool.rows() > border_limit) {
-        return Error{who + std::to_string(pool.rows()) +
-                     " rows to border; each costs a solve a factorization, so " +
-                     std::to_string(border_limit) + " in a scene are the limit; use treatment saddle"};
-      }
-      const RowTreatment treatment = choose(pool);
-      auto& list = treatment == RowTreatment::condensed
-                       ? s_->condensed_rows_
-                       : (treatment == RowTreatment::bordered ? s_->bordered_rows_ : s_->kept_rows_);
-      for (Index r = 0; r < pool.rows(); ++r) list.push_back(s_->first_row_[p] + r);
-    }
-    for (std::size_t k = 0; k < s_->kept_rows_.size(); ++k) {
-      s_->row_unknown_[at(s_->kept_rows_[k])] = s_->free_unknowns() + static_cast<Index>(k);
-    }
-    std::vector<Index> border(at(s_->rows_), -1);
-    for (std::size_t k = 0; k < s_->bordered_rows_.size(); ++k)
-      border[at(s_->bordered_rows_[k])] = static_cast<Index>(k);
-    for (std::size_t k = 0; k < s_->compliance_.size(); ++k) {
-      const ComplianceEntry& e = s_->compliance_[k];
-      if (border[at(e.row)] >= 0) s_->border_compliance_.push_back({k, border[at(e.row)], border[at(e.col)]});
-    }
-    return {};
-  }
-
-  static Result<void> check_condensed(const RowPool& pool, const std::string& who) {
-    if (pool.has_law()) {
-      return Error{who + "a row with a law of its own is not condensed; use treatment saddle or bordered"};
-    }
-    std::vector<double> diagonal(at(pool.rows()), 0);
-    for (const ComplianceEntry& e : pool.compliance) {
-      if (e.row == e.col) diagonal[at(e.row)] += e.value;
-      if (e.row != e.col && e.value != 0) {
-        return Error{
-            who + "their compliance couples rows " + std::to_string(e.col) + " and " + std::to_string(e.row) +
-            " (a consistent or stabilized one does), so they cannot be condensed one by one; use treatment "
-            "saddle, or a lumped compliance, which is another model"};
-      }
-    }
-    for (Index r = 0; r < pool.rows(); ++r) {
-      if (diagonal[at(r)] > 0) continue;
-      return Error{who + "row " + std::to_string(r) + " is hard (compliance " +
-                   std::to_string(diagonal[at(r)]) +
-                   "), so there is nothing to condense it with: K + G^T G / C needs C > 0; use treatment "
-                   "saddle, or nu < "
-                   "0.5"};
-    }
-    return {};
-  }
-
   void build_kkt() {
     std::vector<Contribution> entries;  // key: (column << 32) | row
     const Index free = s_->free_unknowns();
@@ -430,7 +350,7 @@ class SystemCompiler {
     for (const ComplianceEntry& e : s_->compliance_) {
       if (unknown[at(e.row)] >= 0) entries.push_back({key_of(unknown[at(e.col)], unknown[at(e.row)]), 0, 1});
     }
-    for_condensed_columns([&](Index column, Index from, Index to) {
+    for_filled_columns([&](Index column, Index from, Index to) {
       for (Index r = from; r < to; ++r) entries.push_back({key_of(column, r), 0, 1});
     });
     sort_contributions(entries);
@@ -445,12 +365,12 @@ class SystemCompiler {
     for (std::size_t c = 0; c < at(kkt.size); ++c) kkt.column_start[c + 1] += kkt.column_start[c];
   }
 
-  // Visits the columns of all blocks that condensed rows add to the stiffness: unknown of the column, and the
+  // Visits the columns of all blocks that rows add to the stiffness: unknown of the column, and the
   // rows [from, to) of it. Nodes of a row ascend, so the blocks are those of the lower triangle.
   template <class Visit>
-  void for_condensed_columns(Visit visit) const {
+  void for_filled_columns(Visit visit) const {
     const auto& first = s_->first_unknown_;
-    for (const Index row : s_->condensed_rows_) {
+    for (const Index row : s_->filled_rows_) {
       const auto begin = s_->row_jacobian_begin_[at(row)], end = s_->row_jacobian_begin_[at(row) + 1];
       for (auto a = begin; a < end; ++a) {
         const Index i = s_->jacobian_ends_[a][1];
@@ -495,8 +415,8 @@ class SystemCompiler {
       const Index row = s_->row_unknown_[at(e.row)], col = s_->row_unknown_[at(e.col)];
       s_->compliance_place_.push_back(row < 0 ? -1 : place(row, col));
     }
-    for_condensed_columns([&](Index column, Index from, Index to) {
-      s_->condensed_place_.push_back(from < to ? place(from, column) : -1);
+    for_filled_columns([&](Index column, Index from, Index to) {
+      s_->filled_place_.push_back(from < to ? place(from, column) : -1);
     });
     for (Index i = 0; i < s_->kkt_.size; ++i) s_->diagonal_place_.push_back(s_->kkt_.column_start[at(i)]);
   }
@@ -504,7 +424,6 @@ class SystemCompiler {
   // The unknowns of a node share a group; a local row joins the node that most of its stencils have in
   // common, so that the ordering sees one vertex a node. Rows over large parts of a body stay apart.
   void group_unknowns() {
-    constexpr std::int64_t local_limit = 256;  // nodes of a row
     SymmetricPattern& kkt = s_->kkt_;
     kkt.group.assign(at(kkt.size), -1);
     Index groups = 0;
@@ -523,7 +442,7 @@ class SystemCompiler {
       if (s_->row_unknown_[at(r)] < 0) continue;
       Index best = -1;
       std::int64_t best_count = 0;
-      if (static_cast<std::int64_t>(e - begin) <= local_limit) {
+      if (e - begin <= local_row_nodes) {
         for (std::size_t k = begin; k < e; ++k) {
           const Index g = group_of_node[at(s_->jacobian_ends_[k][1])];
           if (g < 0) continue;

@@ -10,10 +10,15 @@ namespace isochor {
 struct SystemParts {
   std::vector<Vec3> rest;    // [m]
   std::vector<double> mass;  // lumped, one a node [kg]
+  // What makes the mass matrix consistent: added to the lumped one. Empty: it stays lumped.
+  std::vector<MassEntry> mass_entries;
   std::vector<std::shared_ptr<const StencilPool>> stencil_pools;
   std::vector<std::shared_ptr<const RowPool>> row_pools;
   std::vector<std::shared_ptr<const Prescriber>> prescribers;
   std::vector<std::shared_ptr<const LoadPool>> loads;
+  // How rows are treated whose pools leave it to us; where it does not fit, the closest that does.
+  RowTreatment treatment = RowTreatment::automatic;
+  bool border_wide_rows = true;  // rather than dual, where `treatment` is dual
 };
 
 // Where a pool's slots begin in the arrays over all pools.
@@ -56,10 +61,15 @@ class System {
   std::span<const Index> kept_rows() const { return kept_rows_; }
   std::span<const Index> condensed_rows() const { return condensed_rows_; }
   std::span<const Index> bordered_rows() const { return bordered_rows_; }
+  std::span<const Index> dual_rows() const { return dual_rows_; }
+  // Rows that add blocks to the stiffness: the condensed ones, then the augmented ones (which are dual too).
+  std::span<const Index> filled_rows() const { return filled_rows_; }
+  // compliance() entries between dual rows.
+  std::span<const std::size_t> dual_compliance() const { return dual_compliance_; }
   // jacobian_ends() of row r: [row_jacobian_begin()[r], row_jacobian_begin()[r + 1]).
   std::span<const std::size_t> row_jacobian_begin() const { return row_jacobian_begin_; }
-  // Where the columns of the blocks of condensed rows go, in the order of rows and of their pairs of nodes.
-  std::span<const std::int64_t> condensed_place() const { return condensed_place_; }
+  // Where the columns of the blocks of filled_rows() go, in the order of rows and of their pairs of nodes.
+  std::span<const std::int64_t> filled_place() const { return filled_place_; }
   // compliance() entry of each row's own diagonal, and the entries between bordered rows.
   std::span<const std::size_t> diagonal_compliance() const { return diagonal_compliance_; }
   struct BorderCompliance {
@@ -88,6 +98,8 @@ class System {
   std::span<const std::int64_t> block_place() const { return block_place_; }
   std::span<const std::int64_t> jacobian_place() const { return jacobian_place_; }
   std::span<const std::array<Index, 2>> block_nodes() const { return block_nodes_; }
+  // Mass of each block beside the lumped one [kg]; empty when the mass is lumped.
+  std::span<const double> block_mass() const { return block_mass_; }
   std::span<const std::array<Index, 2>> jacobian_ends() const { return jacobian_ends_; }  // row, node
 
   std::span<const ComplianceEntry> compliance() const { return compliance_; }  // system rows
@@ -119,6 +131,7 @@ class System {
 
  private:
   friend class SystemCompiler;
+  friend class RowTreatments;
   SystemParts parts_;
   Index rows_ = 0, prescribed_rows_ = 0;
   std::uint64_t layout_ = 0;
@@ -132,11 +145,11 @@ class System {
   std::vector<std::int64_t> block_place_, jacobian_place_, compliance_place_, diagonal_place_;
   std::vector<std::array<Index, 2>> block_nodes_, jacobian_ends_;
   std::vector<ComplianceEntry> compliance_;
-  std::vector<double> row_metric_, row_measure_, row_lower_, row_upper_;
+  std::vector<double> block_mass_, row_metric_, row_measure_, row_lower_, row_upper_;
   std::vector<LawPlace> laws_;
-  std::vector<Index> row_unknown_, kept_rows_, condensed_rows_, bordered_rows_;
-  std::vector<std::size_t> row_jacobian_begin_, diagonal_compliance_;
-  std::vector<std::int64_t> condensed_place_;
+  std::vector<Index> row_unknown_, kept_rows_, condensed_rows_, bordered_rows_, dual_rows_, filled_rows_;
+  std::vector<std::size_t> row_jacobian_begin_, diagonal_compliance_, dual_compliance_;
+  std::vector<std::int64_t> filled_place_;
   std::vector<BorderCompliance> border_compliance_;
   Index memory_ = 0;
   std::vector<Index> first_memory_, first_stencil_memory_;

@@ -10,6 +10,14 @@ class TimeScheme {
   virtual ~TimeScheme() = default;
   virtual std::string_view name() const = 0;
   virtual bool has_inertia() const { return true; }
+  // Whether World::follow() may trace paths of equilibria; memory() is then 3 numbers a node and one.
+  virtual bool follows_paths() const { return false; }
+  // Part of the step at whose end forces and rows are evaluated: x of begin() and finish() is there.
+  virtual double evaluated_at() const { return 1; }
+  // Order of accuracy, and the local error of positions as error_constant * h^2 |acceleration| (first order)
+  // or error_constant * h^3 |its rate of change| (second).
+  virtual int order() const { return 2; }
+  virtual double error_constant() const { return 1.0 / 6; }
 
   // Numbers that the scheme keeps between steps, beside positions and velocities; all zero at the start,
   // which a scheme takes as having no past.

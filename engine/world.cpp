@@ -82,6 +82,7 @@ Result<void> World::Impl::compile_once() {
   for (const EffectPtr& e : sources) {
     if (auto r = e->declare(builder); !r) return r;
   }
+  if (options.consistent_mass && options.scheme->has_inertia()) builder.use_consistent_mass();
   if (auto r = builder.build_solids(); !r) return r;
   for (std::size_t e = 0; e < sources.size(); ++e) {
     builder.set_owner(static_cast<Index>(e));
@@ -95,13 +96,11 @@ Result<void> World::Impl::compile_once() {
   }
   auto parts = builder.finish(!options.scheme->has_inertia());
   if (!parts) return Error{parts.error()};
-  auto compiled_system = System::compile(std::move(parts).value());
-  if (!compiled_system) return Error{compiled_system.error()};
-  system = std::move(compiled_system).value();
-  auto solver = make_linear_solver(static_cast<SolverKind>(options.solver), system->kkt().size);
-  if (!solver) return Error{"world: this build has no linear solver"};
-  newton = std::make_unique<Newton>(system, *parallel, std::move(solver));
-  newton->cancelled = [this] { return cancel_requested.load(std::memory_order_relaxed); };
+  if (auto r = make_method(std::move(parts).value()); !r) return r;
+  newton->cancelled = [this] {
+    return cancel_requested.load(std::memory_order_relaxed) ||
+           (deadline && std::chrono::steady_clock::now() > *deadline);
+  };
   allocate();
   return {};
 }
@@ -122,7 +121,10 @@ void World::Impl::allocate() {
   prescribed.resize(at(system->prescribed_rows()));
   position.resize(system->free_bases().size());
   reactions.assign(n, Vec3{});
-  state.extra.assign(at(system->memory()) + options.scheme->memory(n), 0.0);
+  // Last increment's length and suggestion for the next, then velocities before it.
+  const std::size_t control = controls_error() ? 2 + 3 * n : 0;
+  state.extra.assign(at(system->memory()) + options.scheme->memory(n) + control, 0.0);
+  if (controls_error()) state_before = state;
   memory_before.resize(at(system->memory()));
   for (Index p = 0; p < static_cast<Index>(parts.row_pools.size()); ++p) {
     const RowPool& pool = *parts.row_pools[at(p)];
@@ -132,9 +134,10 @@ void World::Impl::allocate() {
   }
   // Gravity acts on the mass that inertia has: with a lumped mass, free fall stays rigid. Statics has no
   // inertia and takes the consistent distribution, which is more accurate for Tet10.
-  if (options.scheme->has_inertia()) weight = parts.mass;
+  const bool lumped = options.scheme->has_inertia() && !options.consistent_mass;
+  if (lumped) weight = parts.mass;
   for (const BodyData& body : builder.bodies()) {
-    if (options.scheme->has_inertia()) break;
+    if (lumped) break;
     for (const RegionData& region : body.regions) {
       add_nodal_volume(*body.reference, parts.rest, body.global_cells, region.cells, region.density, weight);
     }
@@ -195,26 +198,38 @@ Index World::Impl::count_passing(const StencilIncrement& increment, bool stop) {
   return count;
 }
 
-SaddleReport World::Impl::attempt(double h, int max_iterations, int max_factorizations) {
-  const double t_new = state.t + h;
-  evaluate_data(t_new);
+SaddleProblem World::Impl::problem_at(double t) {
+  evaluate_data(t);
   SaddleProblem problem;
-  problem.mass_scale = options.scheme->begin(state, scheme_memory(), h, predicted);
-  problem.predicted = predicted;
   problem.force = force;
   problem.target = target;
   problem.prescribed = prescribed;
   problem.position = position;
   problem.t0 = state.t;
-  problem.t1 = t_new;
+  problem.t1 = t;
   problem.memory = std::span<const double>(state.extra).first(at(system->memory()));
-  problem.increment = {problem.mass_scale > 0 ? h : 0, state.x, state.t, t_new};
-  SaddleOptions newton_options;
-  newton_options.max_iterations = max_iterations;
-  newton_options.max_factorizations = max_factorizations;
-  newton_options.definiteness = options.definiteness;
-  newton_options.force_tolerance = options.force_tolerance;
-  newton_options.row_tolerance = options.row_tolerance;
+  problem.increment = {0, state.x, state.t, t};
+  return problem;
+}
+
+SaddleOptions World::Impl::saddle_options(const Allowance& allowance) const {
+  SaddleOptions saddle;
+  saddle.max_iterations = allowance.iterations;
+  saddle.max_factorizations = allowance.factorizations;
+  saddle.definiteness = options.definiteness;
+  saddle.force_tolerance = options.force_tolerance;
+  saddle.row_tolerance = options.row_tolerance;
+  return saddle;
+}
+
+SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
+  const double h_evaluated = options.scheme->evaluated_at() * h, t_new = state.t + h_evaluated;
+  SaddleProblem problem = problem_at(t_new);
+  problem.mass_scale = options.scheme->begin(state, scheme_memory(), h, predicted);
+  problem.predicted = predicted;
+  const bool dynamic = problem.mass_scale > 0;
+  if (dynamic) problem.increment.h = h_evaluated;
+  const SaddleOptions saddle = saddle_options(allowance);
   newton->progress = nullptr;
   if (progress) {
     newton->progress = [this, t_new](int iteration, double f, double r) {
@@ -222,181 +237,46 @@ SaddleReport World::Impl::attempt(double h, int max_iterations, int max_factoriz
     };
   }
   // Inertia's guess first; where it fails (it may turn elements over) the old positions are a safe start.
-  const bool dynamic = problem.mass_scale > 0;
   std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
   const auto& start = dynamic ? predicted : state.x;
   std::copy(start.begin(), start.end(), x_trial.begin());
   count_passing(problem.increment, true);
-  SaddleReport report = newton->solve(problem, newton_options, x_trial, lambda_trial);
+  SaddleReport report = newton->solve(problem, saddle, x_trial, lambda_trial);
   if (report.status == SaddleStatus::converged && count_passing(problem.increment, false) > 0) {
     report.status = SaddleStatus::passed_through;
   }
+  const bool out_of_budget = allowance.keep_unfinished && report.iterations > 0 &&
+                             report.status != SaddleStatus::diverged &&
+                             report.status != SaddleStatus::passed_through;
   const bool stuck = report.status != SaddleStatus::converged && report.status != SaddleStatus::cancelled &&
-                     report.status != SaddleStatus::out_of_memory;
+                     report.status != SaddleStatus::out_of_memory && !out_of_budget;
   if (dynamic && stuck) {
     std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
     std::copy(state.x.begin(), state.x.end(), x_trial.begin());
-    SaddleReport second = newton->solve(problem, newton_options, x_trial, lambda_trial);
+    SaddleReport second = newton->solve(problem, saddle, x_trial, lambda_trial);
     if (second.status == SaddleStatus::converged && count_passing(problem.increment, false) > 0) {
       second.status = SaddleStatus::passed_through;
     }
-    second.iterations += report.iterations;
-    second.factorizations += report.factorizations;
-    second.trials += report.trials;
-    second.corrections += report.corrections;
-    second.projected += report.projected;
-    second.shifted += report.shifted;
+    second.add_work(report);
     report = std::move(second);
   }
-  if (report.status == SaddleStatus::converged) {
-    accept_memory(problem.increment);
-    options.scheme->finish(h, x_trial, predicted, state, scheme_memory());
-    std::copy(lambda_trial.begin(), lambda_trial.end(), state.lambda.begin());
-    std::copy(newton->residual().begin(), newton->residual().end(), reactions.begin());
-  }
+  const bool finite_iterate = std::all_of(x_trial.begin(), x_trial.end(), [](const Vec3& x) {
+    return std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z);
+  });
+  const bool best_there_is = allowance.keep_unfinished && report.iterations > 0 && finite_iterate &&
+                             report.status != SaddleStatus::diverged &&
+                             !cancel_requested.load(std::memory_order_relaxed) &&
+                             count_passing(problem.increment, false) == 0;
+  if (report.status == SaddleStatus::converged || best_there_is) accept(h, predicted);
   return report;
 }
 
-namespace {
-
-void accumulate(StepReport& total, const SaddleReport& r) {
-  total.iterations += r.iterations;
-  total.factorizations += r.factorizations;
-  total.trials += r.trials;
-  total.corrections += r.corrections;
-  total.projected += r.projected;
-  total.shifted += r.shifted;
-  total.negative_pivots = r.negative_pivots;
-  total.force_residual = r.force_residual;
-  total.row_residual = r.row_residual;
-  total.linear_residual = std::max(total.linear_residual, r.linear_residual);
-}
-
-std::string failure_text(const SaddleReport& r, double t) {
-  std::string text =
-      "no equilibrium found at t = " + std::to_string(t) + ": " + std::string(to_string(r.status));
-  if (!r.message.empty()) text += " (" + r.message + ")";
-  return text;
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-}  // namespace
-
-StepReport World::Impl::invalid(std::string reason) const {
-  StepReport report;
-  report.status = StepStatus::invalid;
-  report.reason = std::move(reason);
-  report.time = state.t;
-  return report;
-}
-
-void World::Impl::finish_report(StepReport& report, const StageSeconds& before, double total) const {
-  const StageSeconds& now = newton->seconds();
-  report.seconds = {now.analyze - before.analyze,
-                    now.evaluate - before.evaluate,
-                    now.gather - before.gather,
-                    now.factor - before.factor,
-                    now.solve - before.solve,
-                    now.line_search - before.line_search,
-                    total};
-  report.expected_negative_pivots = system->rows();
-  report.time = state.t;
-}
-
-StepReport World::step(double h) {
-  Impl& w = *impl_;
-  if (auto r = w.compile(); !r) return w.invalid(r.error());
-  if (!(h > 0) || !std::isfinite(h))
-    return w.invalid("step: h = " + std::to_string(h) + "; it must be positive and finite");
-  const auto start = std::chrono::steady_clock::now();
-  const StageSeconds before = w.newton->seconds();
-  w.cancel_requested = false;
-  w.amounts_before.clear();
-  w.save_amounts(w.amounts_before);
-  w.begin_amounts(w.state.t, w.state.t + h);
-  StepReport report;
-  const double t_target = w.state.t + h;
-  const SaddleReport r = w.attempt(h, w.options.max_iterations, 10 * w.options.max_iterations);
-  accumulate(report, r);
-  report.substeps = 1;
-  if (r.status == SaddleStatus::cancelled) {
-    report.status = StepStatus::cancelled;
-    report.reason = "cancelled by the host";
-  } else if (r.status != SaddleStatus::converged) {
-    report.status = StepStatus::rejected;
-    report.rejected_substeps = 1;
-    report.reason = failure_text(r, t_target);
-  }
-  if (report.status != StepStatus::converged) w.load_amounts(w.amounts_before);
-  w.finish_report(report, before, seconds_since(start));
-  return report;
-}
-
-StepReport World::advance(double h) {
-  Impl& w = *impl_;
-  if (auto r = w.compile(); !r) return w.invalid(r.error());
-  if (!(h > 0) || !std::isfinite(h)) {
-    return w.invalid("advance: h = " + std::to_string(h) + "; it must be positive and finite");
-  }
-  const auto start = std::chrono::steady_clock::now();
-  const StageSeconds before = w.newton->seconds();
-  w.cancel_requested = false;
-  const double t0 = w.state.t, t_end = t0 + h;
-  w.begin_amounts(t0, t_end);
-  StepReport report;
-  constexpr int patience = 25, patience_for_factors = 35;
-  double increment = h;
-  int successes = 1;
-  while (w.state.t < t_end - 1e-12 * h) {
-    // The last increment lands on the end exactly.
-    const double remaining = t_end - w.state.t;
-    const double dt = increment > 0.999 * remaining ? remaining : increment;
-    // What converges at all does so in a dozen iterations; while the increment can still be cut, more are
-    // wasted.
-    const bool last_chance = 0.5 * dt < w.options.smallest_fraction * h;
-    const SaddleReport r =
-        last_chance ? w.attempt(dt, w.options.max_iterations, 2 * w.options.max_iterations)
-                    : w.attempt(dt, std::min(w.options.max_iterations, patience), patience_for_factors);
-    accumulate(report, r);
-    if (r.status == SaddleStatus::converged) {
-      ++report.substeps;
-      // Behind a failure the increment grows again only after two successes in a row.
-      if (++successes >= 2) increment = std::min(2 * dt, h);
-      continue;
-    }
-    successes = 0;
-    if (r.status == SaddleStatus::cancelled) {
-      report.status = StepStatus::cancelled;
-      report.reason = "cancelled by the host";
-      break;
-    }
-    ++report.rejected_substeps;
-    increment = 0.5 * dt;
-    const bool hopeless = r.status == SaddleStatus::out_of_memory || r.status == SaddleStatus::not_finite;
-    if (increment < w.options.smallest_fraction * h || hopeless) {
-      report.status = StepStatus::rejected;
-      report.reason = failure_text(r, w.state.t + dt);
-      if (r.status == SaddleStatus::singular) {
-        report.reason +=
-            ": rows without compliance may repeat each other or lack stabilization, or a part is not held";
-      } else if (!hopeless) {
-        report.reason += "; increments shrank to " + std::to_string(increment / h) +
-                         " of the step, the last equilibrium is at t = " + std::to_string(w.state.t) +
-                         ": probably there is none beyond (a limit point, or a load that nothing can carry)";
-      }
-      break;
-    }
-  }
-  if (report.status == StepStatus::converged) w.state.t = t_end;
-  w.finish_report(report, before, seconds_since(start));
-  return report;
-}
-
-void World::cancel() {
-  impl_->cancel_requested = true;
+// Makes the trial positions and multipliers the state.
+void World::Impl::accept(double h, std::span<const Vec3> prediction) {
+  accept_memory({options.scheme->has_inertia() ? h : 0, state.x, state.t, state.t + h});
+  options.scheme->finish(h, x_trial, prediction, state, scheme_memory());
+  std::copy(lambda_trial.begin(), lambda_trial.end(), state.lambda.begin());
+  std::copy(newton->residual().begin(), newton->residual().end(), reactions.begin());
 }
 
 Result<void> World::compile() {

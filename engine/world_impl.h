@@ -2,9 +2,11 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
+#include <optional>
 
 #include "engine/builder.h"
-#include "engine/newton.h"
+#include "engine/saddle_point.h"
 #include "engine/time_scheme.h"
 #include "isochor/world.h"
 
@@ -18,10 +20,12 @@ struct World::Impl {
   std::vector<std::unique_ptr<EffectInstance>> instances;
   std::vector<std::vector<HeldDirection>> held_by;  // by effect
   std::shared_ptr<const System> system;
-  std::unique_ptr<Newton> newton;
+  std::unique_ptr<SaddlePoint> newton;
+  std::string method;
   State state;
   std::string compile_error;
   std::atomic<bool> cancel_requested{false};
+  std::optional<std::chrono::steady_clock::time_point> deadline;
   std::function<void(const ProgressInfo&)> progress;
 
   // Data of the increment under way; taken once, at compile time.
@@ -30,6 +34,7 @@ struct World::Impl {
       memory_before;  // weight: consistent nodal mass [kg]
 
   std::vector<double> amounts_before;
+  State state_before;  // of an increment that the control of errors may take back
 
   bool compiled() const { return newton != nullptr; }
   Result<void> compile();
@@ -39,11 +44,28 @@ struct World::Impl {
   void load_amounts(std::span<const double> all);
   void begin_amounts(double t0, double t1);
   void evaluate_data(double t);
-  // The part of state.extra that the time scheme keeps.
-  std::span<double> scheme_memory() { return std::span(state.extra).subspan(at(system->memory())); }
+  // state.extra: what row pools keep, what the time scheme keeps, what the control of errors keeps.
+  std::span<double> scheme_memory() {
+    return std::span(state.extra).subspan(at(system->memory()), options.scheme->memory(state.x.size()));
+  }
+  std::span<double> error_memory() {
+    return std::span(state.extra).subspan(at(system->memory()) + options.scheme->memory(state.x.size()));
+  }
+  bool controls_error() const { return options.time_error > 0 && options.scheme->has_inertia(); }
+  double estimate_error(double h);
   void accept_memory(const StencilIncrement& increment);
   Index count_passing(const StencilIncrement& increment, bool stop);
-  SaddleReport attempt(double h, int max_iterations, int max_factorizations);
+  // What a solve may cost, and whether its last iterate is kept when that is used up.
+  struct Allowance {
+    int iterations = 0, factorizations = 0;
+    bool keep_unfinished = false;
+  };
+  SaddleProblem problem_at(double t);
+  SaddleOptions saddle_options(const Allowance& allowance) const;
+  SaddleReport attempt(double h, const Allowance& allowance);
+  void accept(double h, std::span<const Vec3> prediction);
+  SaddleReport rescue(double h);
+  Result<void> make_method(SystemParts parts);
   StepReport invalid(std::string reason) const;
   void finish_report(StepReport& report, const StageSeconds& before, double total) const;
   // phi - target - C lambda of all compliant rows at the state.

@@ -156,9 +156,10 @@ double World::elastic_energy() const {
 double World::kinetic_energy() const {
   double energy = 0;
   if (!impl_->compiled()) return energy;
-  const auto& mass = impl_->system->parts().mass;
-  for (std::size_t i = 0; i < mass.size(); ++i)
-    energy += 0.5 * mass[i] * dot(impl_->state.v[i], impl_->state.v[i]);
+  const auto& v = impl_->state.v;
+  std::vector<Vec3> momentum(v.size());
+  impl_->newton->assembly().mass_times(v, momentum);
+  for (std::size_t i = 0; i < v.size(); ++i) energy += 0.5 * dot(momentum[i], v[i]);
   return energy;
 }
 

@@ -7,7 +7,7 @@ namespace isochor {
 namespace {
 
 // x is in equilibrium at every load factor; there is no inertia.
-class Statics final : public TimeScheme {
+class Statics : public TimeScheme {
  public:
   std::string_view name() const override { return "static"; }
   bool has_inertia() const override { return false; }
@@ -20,6 +20,23 @@ class Statics final : public TimeScheme {
               std::span<double>) const override {
     std::copy(x_new.begin(), x_new.end(), state.x.begin());
     state.t += h;
+  }
+};
+
+// Statics that can trace its path. Memory: the last step, three numbers a node, then its load factor.
+class Continuation final : public Statics {
+ public:
+  std::string_view name() const override { return "continuation"; }
+  bool follows_paths() const override { return true; }
+  std::size_t memory(std::size_t nodes) const override { return 3 * nodes + 1; }
+  void finish(double h, std::span<const Vec3> x_new, std::span<const Vec3> predicted, State& state,
+              std::span<double> memory) const override {
+    for (std::size_t i = 0; i < x_new.size(); ++i) {
+      const Vec3 d = x_new[i] - state.x[i];
+      for (int k = 0; k < 3; ++k) memory[3 * i + static_cast<std::size_t>(k)] = d[k];
+    }
+    memory.back() = h;
+    Statics::finish(h, x_new, predicted, state, memory);
   }
 };
 
@@ -39,6 +56,8 @@ void finish_euler(double h, std::span<const Vec3> x_new, State& state) {
 class ImplicitEuler final : public TimeScheme {
  public:
   std::string_view name() const override { return "implicit_euler"; }
+  int order() const override { return 1; }
+  double error_constant() const override { return 0.5; }
   double begin(const State& state, std::span<const double>, double h,
                std::span<Vec3> predicted) const override {
     return begin_euler(state, h, predicted);
@@ -46,6 +65,28 @@ class ImplicitEuler final : public TimeScheme {
   void finish(double h, std::span<const Vec3> x_new, std::span<const Vec3>, State& state,
               std::span<double>) const override {
     finish_euler(h, x_new, state);
+  }
+};
+
+// M 2 (v_mid - v)/h = forces at x_mid, x_mid = x + h/2 v_mid; then x_new and v_new by extrapolation through
+// the middle (Simo & Tarnow 1992 discuss it beside their conserving variant).
+class ImplicitMidpoint final : public TimeScheme {
+ public:
+  std::string_view name() const override { return "implicit_midpoint"; }
+  double evaluated_at() const override { return 0.5; }
+  double begin(const State& state, std::span<const double>, double h,
+               std::span<Vec3> predicted) const override {
+    for (std::size_t i = 0; i < state.x.size(); ++i) predicted[i] = state.x[i] + 0.5 * h * state.v[i];
+    return 4 / (h * h);
+  }
+  void finish(double h, std::span<const Vec3> x_mid, std::span<const Vec3>, State& state,
+              std::span<double>) const override {
+    for (std::size_t i = 0; i < state.x.size(); ++i) {
+      const Vec3 step = 2 * (x_mid[i] - state.x[i]);
+      state.x[i] += step;
+      state.v[i] = (2 / h) * step - state.v[i];
+    }
+    state.t += h;
   }
 };
 
@@ -63,6 +104,7 @@ void keep(std::span<double> memory, std::size_t i, const Vec3& v) {
 class Bdf2 final : public TimeScheme {
  public:
   std::string_view name() const override { return "bdf2"; }
+  double error_constant() const override { return 2.0 / 9; }
   std::size_t memory(std::size_t nodes) const override { return 1 + 6 * nodes; }
   double begin(const State& state, std::span<const double> memory, double h,
                std::span<Vec3> predicted) const override {
@@ -162,6 +204,12 @@ class GeneralizedAlpha final : public TimeScheme {
 
 SchemePtr statics() {
   return std::make_shared<Statics>();
+}
+SchemePtr continuation() {
+  return std::make_shared<Continuation>();
+}
+SchemePtr implicit_midpoint() {
+  return std::make_shared<ImplicitMidpoint>();
 }
 SchemePtr implicit_euler() {
   return std::make_shared<ImplicitEuler>();

@@ -141,6 +141,7 @@ bool Run::stopped(const StepReport& report) {
       result_.status = interrupted_ ? RunStatus::interrupted : RunStatus::budget;
       result_.reason = interrupted_ ? "interrupted" : "the time allowed is used up";
       break;
+    case StepStatus::unfinished:
     case StepStatus::rejected:
       result_.status = RunStatus::not_converged;
       result_.reason = report.reason;

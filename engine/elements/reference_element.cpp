@@ -244,6 +244,26 @@ void add_lumped_mass(const ReferenceElement& e, std::span<const Vec3> rest, std:
   }
 }
 
+void add_consistent_mass(const ReferenceElement& e, std::span<const Vec3> rest,
+                         std::span<const Index> cell_nodes, std::span<const Index> cells, double density,
+                         std::vector<MassEntry>& mass) {
+  for (const Index c : cells) {
+    const Index* nodes = cell_nodes.data() + at(c) * static_cast<std::size_t>(e.nodes);
+    for (int a = 0; a < e.nodes; ++a) {
+      for (int b = 0; b <= a; ++b) {
+        double sum = 0;
+        for (int q = 0; q < e.points; ++q) {
+          const double w = e.weight[static_cast<std::size_t>(q)] * rest_map(e, q, rest, nodes).determinant;
+          const double* const N = e.shape.data() + static_cast<std::ptrdiff_t>(q) * e.nodes;
+          // One point does not integrate the square of linear functions.
+          sum += e.nodes == 4 ? w * (a == b ? 0.1 : 0.05) : w * N[a] * N[b];
+        }
+        mass.push_back({std::max(nodes[a], nodes[b]), std::min(nodes[a], nodes[b]), density * sum});
+      }
+    }
+  }
+}
+
 void add_nodal_volume(const ReferenceElement& e, std::span<const Vec3> rest,
                       std::span<const Index> cell_nodes, std::span<const Index> cells, double density,
                       std::span<double> volume) {

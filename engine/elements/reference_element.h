@@ -47,6 +47,12 @@ void add_lumped_mass(const ReferenceElement& element, std::span<const Vec3> rest
                      std::span<const Index> cell_nodes, std::span<const Index> cells, double density,
                      std::span<double> mass);
 
+// Lower triangle of the consistent mass matrix of the cells, appended to `mass`: integrals of density N_a
+// N_b.
+void add_consistent_mass(const ReferenceElement& element, std::span<const Vec3> rest,
+                         std::span<const Index> cell_nodes, std::span<const Index> cells, double density,
+                         std::vector<MassEntry>& mass);
+
 // Integral of N_a over each cell, added to `volume` [m^3]: what a body force is shared out by (consistent).
 void add_nodal_volume(const ReferenceElement& element, std::span<const Vec3> rest,
                       std::span<const Index> cell_nodes, std::span<const Index> cells, double density,

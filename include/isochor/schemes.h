@@ -8,6 +8,10 @@ namespace isochor {
 // Equilibrium without inertia. Time is the load factor: curves ramp from 0 to 1 by default.
 SchemePtr statics();
 
+// The same, for World::follow() too: paths of equilibria through limit points. step() and advance() stay
+// those of statics. Curves must reach as far as the load factor may go.
+SchemePtr continuation();
+
 // First order; damps fast motion strongly; the safest with large steps.
 SchemePtr implicit_euler();
 
@@ -24,5 +28,11 @@ SchemePtr generalized_alpha(double spectral_radius = 0.8);
 // Newmark's method with beta = 1/4, gamma = 1/2 (the trapezoidal rule): generalized_alpha's forces at the end
 // of a step and no damping of its own. For bodies without hard rows; with them, multipliers oscillate.
 SchemePtr newmark();
+
+// The implicit midpoint rule: second order, no damping of its own; forces, supports and rows are met in the
+// middle of a step, so that the end of a step misses hard rows by what is of second order in its length, and
+// results at the end (volume error, residual) say so. Multipliers belong to the middle and do not oscillate.
+// Not for contact or other rows with bounds.
+SchemePtr implicit_midpoint();
 
 }  // namespace isochor

@@ -91,6 +91,8 @@ enum class RowTreatment : std::uint8_t {
   saddle,     // an unknown of the matrix, with a negative pivot
   condensed,  // eliminated beforehand, K += G^T G / C: local rows with a positive, diagonal compliance
   bordered,   // eliminated around the factorization: a few rows over many nodes, without fill in the matrix
+  dual,       // conjugate gradients on the multipliers around the factors of the stiffness alone
+  augmented,  // the same with G^T W G added to the stiffness, which leaves the solution where it is
 };
 
 // What a method does with the indefinite Hessian of an element: keeps it, raises its negative eigenvalues to

@@ -68,8 +68,20 @@ struct BodyDef {
 
 enum class Solver : std::uint8_t { automatic, mumps, cholmod, eigen };
 
+// How the saddle point of a step is solved. All end at the same solution; docs/solver.md compares their cost.
+enum class Method : std::uint8_t {
+  automatic,            // chosen when the world is compiled; World::method() says what and why
+  saddle_point,         // Newton, direct factors of the whole saddle point
+  condensation,         // Newton, compliant rows condensed into the stiffness, wide ones bordered
+  dual_gradients,       // Newton, direct factors of the stiffness, conjugate gradients on the multipliers
+  augmented_gradients,  // the same on an augmented stiffness: positive definite more often, fewer iterations
+  dual_ascent,          // positions by Newton at fixed multipliers, these by steepest ascent; no saddle point
+  augmented_ascent,     // the same on an augmented Lagrangian, steps in units of the row metric
+};
+
 struct WorldOptions {
   SchemePtr scheme;  // required: implicit_euler(), statics(), ...
+  Method method = Method::automatic;
   Solver solver = Solver::automatic;
   int threads = 0;          // 0: all the machine has. The answer does not depend on it.
   int max_iterations = 60;  // Newton iterations a step
@@ -81,12 +93,32 @@ struct WorldOptions {
   double row_tolerance = 1e-10;   // relative volume (or other measure) error of a row
   // Adaptive increments of advance(): smallest fraction of the increment asked for.
   double smallest_fraction = 1.0 / 64;
+  // Where increments have shrunk to that and still fail, statics tries to reach the equilibrium through a
+  // damped motion (pseudo-transient continuation) before it gives up.
+  bool transient_rescue = true;
+  // Dynamics: largest local error of positions an increment of advance() may have, root mean square over the
+  // mass, relative to the scene's length. 0: increments are as long as they converge.
+  double time_error = 0;
+  // Inertia by the consistent mass matrix instead of the lumped one.
+  bool consistent_mass = false;
   Vec3 gravity{};  // [m/s^2]; scaled by gravity_curve
   Curve gravity_curve = Curve::constant(1);
   std::function<void(const std::string&)> log;  // warnings; may be empty
 };
 
-enum class StepStatus : std::uint8_t { converged, rejected, cancelled, invalid };
+enum class StepStatus : std::uint8_t {
+  converged,
+  rejected,  // no equilibrium found; the state is as it was
+  cancelled,
+  invalid,
+  unfinished,  // the budget ran out: the state is the best iterate, the residuals say how good
+};
+
+// What a step may cost: Newton iterations and wall time. Time makes results depend on the machine.
+struct StepBudget {
+  int iterations = 0;  // 0: WorldOptions::max_iterations
+  double seconds = 0;  // 0: no limit; an iteration under way is finished
+};
 
 // Seconds by stage of the work done.
 struct StageTimes {
@@ -101,8 +133,15 @@ struct StepReport {
   int iterations = 0;   // Newton iterations, each with its own factorization
   int corrections = 0;  // further steps on factors at hand
   int factorizations = 0, trials = 0;
-  int projected = 0, shifted = 0;  // iterations whose matrix had to be mended
+  int projected = 0, shifted = 0;    // iterations whose matrix had to be mended
+  int dual_steps = 0;                // of dual ascent
+  std::int64_t dual_iterations = 0;  // of conjugate gradients on multipliers
+  int rescues = 0;                   // increments that only a damped motion brought to their equilibrium
+  int error_rejections = 0;  // increments that converged and were taken back for WorldOptions::time_error
   Index negative_pivots = -1, expected_negative_pivots = 0;
+  // follow(): directions in which the equilibrium is unstable under fixed loads; -1: the backend cannot tell.
+  Index unstable_directions = -1;
+  double time_error = 0;  // estimate for the last increment, as in WorldOptions
   double force_residual = 0, row_residual = 0, linear_residual = 0;
   StageTimes seconds;
 };
@@ -163,9 +202,18 @@ class World {
   // One increment of h seconds (statics: of load factor). A rejected step leaves the state bit for bit as it
   // was.
   StepReport step(double h);
+  // The same within a budget, for hosts with a frame to draw: a step that does not converge in time is kept
+  // at its last iterate, which has gone down in energy or towards its rows, and reported `unfinished`.
+  // Nothing is kept that is not finite.
+  StepReport step(double h, const StepBudget& budget);
   // As many increments as it takes to advance by h: halves increments that fail, lengthens them again. On
   // failure the state is the last one that converged and `time` says how far it got.
   StepReport advance(double h);
+  // Statics, scheme continuation() only: one step of given length along the path of equilibria, through limit
+  // points, where the load factor time() turns back. The length counts displacements, root mean square over
+  // the nodes [m], and load: sqrt(rms^2 + (load_weight dt)^2). The step is halved up to ten times where it
+  // fails; the report tells whether the equilibrium is stable.
+  StepReport follow(double length);
   // Stops a step that is running, from any thread: it returns `cancelled` and leaves the state untouched.
   void cancel();
 
@@ -200,6 +248,8 @@ class World {
   double constitutive_residual() const;
   WorldSize size() const;
   std::uint64_t state_hash() const;
+  // The method at work and why, in words: "saddle_point: ...".
+  std::string method() const;
   // What compile() noticed and took in its stride.
   const std::vector<std::string>& warnings() const;
 

@@ -35,8 +35,9 @@ ISOCHOR_WORDS(BulkChoice, 2, {BulkChoice::consistent, "consistent"},
               {BulkChoice::bulk_modulus, "bulk_modulus"});
 ISOCHOR_WORDS(VolumeStrainKind, 2, {VolumeStrainKind::linear, "linear"},
               {VolumeStrainKind::logarithmic, "logarithmic"});
-ISOCHOR_WORDS(RowTreatment, 4, {RowTreatment::automatic, "automatic"}, {RowTreatment::saddle, "saddle"},
-              {RowTreatment::condensed, "condensed"}, {RowTreatment::bordered, "bordered"});
+ISOCHOR_WORDS(RowTreatment, 6, {RowTreatment::automatic, "automatic"}, {RowTreatment::saddle, "saddle"},
+              {RowTreatment::condensed, "condensed"}, {RowTreatment::bordered, "bordered"}, {RowTreatment::dual, "dual"},
+              {RowTreatment::augmented, "augmented"});
 ISOCHOR_WORDS(SchemeWord, 4, {SchemeWord::implicit_euler, "implicit_euler"}, {SchemeWord::bdf2, "bdf2"},
               {SchemeWord::generalized_alpha, "generalized_alpha"}, {SchemeWord::newmark, "newmark"});
 ISOCHOR_WORDS(CavityControl, 5, {CavityControl::pressure, "pressure"}, {CavityControl::volume, "volume"},

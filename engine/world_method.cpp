@@ -1,0 +1,98 @@
+// Which method solves the saddle points of a world.
+#include "engine/dual_ascent.h"
+#include "engine/path_follower.h"
+#include "engine/world_impl.h"
+
+namespace isochor {
+
+namespace {
+
+struct Choice {
+  Method method = Method::automatic;
+  std::string reason;
+};
+
+std::string_view name_of(Method method) {
+  switch (method) {
+    case Method::automatic:
+      return "automatic";
+    case Method::saddle_point:
+      return "saddle_point";
+    case Method::condensation:
+      return "condensation";
+    case Method::dual_gradients:
+      return "dual_gradients";
+    case Method::augmented_gradients:
+      return "augmented_gradients";
+    case Method::dual_ascent:
+      return "dual_ascent";
+    case Method::augmented_ascent:
+      return "augmented_ascent";
+  }
+  return "unknown";
+}
+
+RowTreatment treatment_of(Method method) {
+  switch (method) {
+    case Method::automatic:
+      break;
+    case Method::saddle_point:
+      return RowTreatment::saddle;
+    case Method::condensation:
+      return RowTreatment::condensed;
+    case Method::dual_gradients:
+    case Method::dual_ascent:
+      return RowTreatment::dual;
+    case Method::augmented_gradients:
+    case Method::augmented_ascent:
+      return RowTreatment::augmented;
+  }
+  return RowTreatment::automatic;
+}
+
+}  // namespace
+
+Result<void> World::Impl::make_method(SystemParts parts) {
+  const bool ascent = options.method == Method::dual_ascent || options.method == Method::augmented_ascent;
+  const bool follows = options.scheme->follows_paths();
+  if (ascent && follows) {
+    return Error{"world: method " + std::string(name_of(options.method)) +
+                 " finds stable equilibria only, paths of equilibria lead through unstable ones; use another "
+                 "method with continuation()"};
+  }
+  parts.treatment = treatment_of(options.method);
+  parts.border_wide_rows = !ascent;
+  auto compiled_system = System::compile(std::move(parts));
+  if (!compiled_system) return Error{compiled_system.error()};
+  system = std::move(compiled_system).value();
+  if (ascent && static_cast<Index>(system->dual_rows().size()) != system->rows()) {
+    return Error{
+        "world: method " + std::string(name_of(options.method)) +
+        " takes all rows as dual, but an effect asks for another treatment of its rows; leave it automatic"};
+  }
+  auto solver = make_linear_solver(static_cast<SolverKind>(options.solver), system->kkt().size);
+  if (!solver) return Error{"world: this build has no linear solver"};
+  const std::string backend(solver->name());
+  if (ascent) {
+    DualAscentOptions ascent_options;
+    ascent_options.augmented = ascent_options.scaled = options.method == Method::augmented_ascent;
+    newton = std::make_unique<DualAscent>(system, *parallel, std::move(solver), ascent_options);
+  } else if (follows) {
+    newton = std::make_unique<PathFollower>(system, *parallel, std::move(solver));
+  } else {
+    newton = std::make_unique<Newton>(system, *parallel, std::move(solver));
+  }
+  const auto count = [](std::span<const Index> rows) { return std::to_string(rows.size()); };
+  method = std::string(name_of(options.method)) + ": " + std::to_string(system->free_unknowns()) +
+           " displacements; rows: " + count(system->kept_rows()) + " in the matrix, " +
+           count(system->condensed_rows()) + " condensed, " + count(system->bordered_rows()) + " bordered, " +
+           count(system->dual_rows()) + " dual; " + backend;
+  return {};
+}
+
+std::string World::method() const {
+  if (!impl_->compile()) return {};
+  return impl_->method;
+}
+
+}  // namespace isochor

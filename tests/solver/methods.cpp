@@ -1,0 +1,102 @@
+// Every method ends at the same solution of the same model.
+#include <cmath>
+#include <string>
+
+#include "support/worlds.h"
+
+namespace {
+
+using namespace isochor;
+
+struct Outcome {
+  StepReport report;
+  std::vector<Vec3> x;
+  std::string method;
+  double pressure = 0;
+};
+
+double distance(const Outcome& a, const Outcome& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.x.size(); ++i) {
+    const Vec3 d = a.x[i] - b.x[i];
+    most = std::max(most, std::sqrt(dot(d, d)));
+  }
+  return most;
+}
+
+const Method kMethods[] = {Method::condensation, Method::dual_gradients, Method::augmented_gradients,
+                           Method::dual_ascent, Method::augmented_ascent};
+
+Outcome finish(World& world, BodyId body) {
+  Outcome out;
+  out.report = world.advance(1);
+  out.x.assign(world.positions(body).begin(), world.positions(body).end());
+  out.method = world.method();
+  return out;
+}
+
+Outcome bend(Method method, Element element, double poisson, VolumeSpace space, double gravity = -1,
+             bool dynamic = false) {
+  WorldOptions options = dynamic ? test::dynamic_options() : test::static_options();
+  options.gravity = {0, 0, gravity};
+  options.method = method;
+  World world = test::make_world(options);
+  BoxMeshDef def;
+  def.upper = {0.4, 0.1, 0.1};
+  def.divisions = {8, 2, 2};
+  const BodyId body =
+      test::add_body(world, test::value(box_mesh(def)), element, test::neo_hookean(30e3, poisson));
+  VolumeDef rows;
+  rows.body = body;
+  rows.space = space;
+  test::value(world.add(volume(rows)));
+  test::hold(world, body, {"x0"});
+  if (!dynamic) return finish(world, body);
+  Outcome out;
+  for (int k = 0; k < 3; ++k) {
+    out.report = world.step(0.02);
+    INFO(out.report.reason);
+    REQUIRE(out.report.status == StepStatus::converged);
+  }
+  out.x.assign(world.positions(body).begin(), world.positions(body).end());
+  out.method = world.method();
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("all methods bend a beam alike") {
+  for (const double poisson : {0.45, 0.4999, 0.5}) {
+    for (const Element element : {Element::tet4, Element::tet4_edge_smoothed}) {
+      const Outcome reference = bend(Method::saddle_point, element, poisson, VolumeSpace::node);
+      REQUIRE(reference.report.status == StepStatus::converged);
+      for (const Method method : kMethods) {
+        const Outcome other = bend(method, element, poisson, VolumeSpace::node);
+        INFO(other.method << ", nu = " << poisson << ": " << other.report.reason << " iterations "
+                          << other.report.iterations << ", ascents " << other.report.dual_steps
+                          << ", conjugate gradients " << other.report.dual_iterations);
+        CHECK(other.report.status == StepStatus::converged);
+        CHECK(distance(reference, other) < 1e-8 * 0.4);
+      }
+    }
+  }
+}
+
+TEST_CASE("all methods take element rows and time steps alike") {
+  const Outcome reference = bend(Method::saddle_point, Element::tet4, 0.45, VolumeSpace::element, -9.81, true);
+  for (const Method method : kMethods) {
+    const Outcome other = bend(method, Element::tet4, 0.45, VolumeSpace::element, -9.81, true);
+    INFO(other.method);
+    CHECK(distance(reference, other) < 1e-8 * 0.4);
+  }
+}
+
+TEST_CASE("the dual methods say how much they worked") {
+  const Outcome gradients = bend(Method::dual_gradients, Element::tet4, 0.5, VolumeSpace::node);
+  const Outcome augmented = bend(Method::augmented_gradients, Element::tet4, 0.5, VolumeSpace::node);
+  CHECK(gradients.report.dual_iterations > 0);
+  CHECK(augmented.report.dual_iterations > 0);
+  CHECK(augmented.report.dual_iterations < gradients.report.dual_iterations);
+  const Outcome ascent = bend(Method::dual_ascent, Element::tet4, 0.5, VolumeSpace::node);
+  CHECK(ascent.report.dual_steps > 1);
+}
