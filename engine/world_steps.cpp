@@ -299,6 +299,10 @@ StepReport World::advance(double h) {
   return report;
 }
 
+void World::cancel() {
+  impl_->cancel_requested = true;
+}
+
 StepReport World::follow(double length) {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return w.invalid(r.error());

@@ -83,7 +83,8 @@ TEST_CASE("all methods bend a beam alike") {
 }
 
 TEST_CASE("all methods take element rows and time steps alike") {
-  const Outcome reference = bend(Method::saddle_point, Element::tet4, 0.45, VolumeSpace::element, -9.81, true);
+  const Outcome reference =
+      bend(Method::saddle_point, Element::tet4, 0.45, VolumeSpace::element, -9.81, true);
   for (const Method method : kMethods) {
     const Outcome other = bend(method, Element::tet4, 0.45, VolumeSpace::element, -9.81, true);
     INFO(other.method);
