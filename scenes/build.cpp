@@ -11,7 +11,7 @@ namespace isochor {
 namespace {
 
 SchemePtr make_scheme(const AnalysisDef& a) {
-  if (a.type == AnalysisType::statics) return statics();
+  if (a.type == AnalysisType::statics) return a.path_step ? continuation() : statics();
   switch (a.scheme) {
     case SchemeWord::implicit_euler:
       return implicit_euler();
@@ -21,6 +21,8 @@ SchemePtr make_scheme(const AnalysisDef& a) {
       return generalized_alpha(a.spectral_radius);
     case SchemeWord::newmark:
       return newmark();
+    case SchemeWord::implicit_midpoint:
+      return implicit_midpoint();
   }
   return nullptr;
 }
@@ -131,6 +133,7 @@ Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
   WorldOptions world_options;
   const AnalysisDef& a = scene.analysis;
   world_options.scheme = make_scheme(a);
+  world_options.method = a.method;
   world_options.solver = a.solver;
   world_options.threads = options.threads;
   world_options.max_iterations = a.max_iterations;
@@ -138,6 +141,9 @@ Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
   world_options.force_tolerance = a.force_tolerance;
   world_options.row_tolerance = a.row_tolerance;
   world_options.smallest_fraction = a.smallest_fraction;
+  world_options.transient_rescue = a.transient_rescue;
+  world_options.time_error = a.time_error;
+  world_options.consistent_mass = a.consistent_mass;
   world_options.gravity = scene.gravity;
   world_options.gravity_curve = scene.gravity_amount;
   auto world = World::create(std::move(world_options));

@@ -137,6 +137,20 @@ Result<void> check_analysis(const AnalysisDef& a) {
   if (a.type == AnalysisType::statics && a.scheme != SchemeWord::implicit_euler) {
     return Error{"analysis.scheme belongs to dynamics; remove it or set analysis.type to \"dynamic\""};
   }
+  if (a.path_step && (!(*a.path_step > 0) || !std::isfinite(*a.path_step))) {
+    return Error{"analysis.path_step = " + number(*a.path_step) + " m; it must be positive and finite"};
+  }
+  if (a.path_step && a.type != AnalysisType::statics) {
+    return Error{"analysis.path_step belongs to statics; remove it or set analysis.type to \"static\""};
+  }
+  if (!(a.time_error >= 0) || !std::isfinite(a.time_error)) {
+    return Error{"analysis.time_error = " + number(a.time_error) +
+                 "; it must be zero (no control) or a positive part of the scene's length"};
+  }
+  if (a.type == AnalysisType::statics && (a.time_error > 0 || a.consistent_mass)) {
+    return Error{"analysis." + std::string(a.time_error > 0 ? "time_error" : "consistent_mass") +
+                 " belongs to dynamics; remove it or set analysis.type to \"dynamic\""};
+  }
   if (!(a.smallest_fraction > 0) || a.smallest_fraction > 1) {
     return Error{"analysis.smallest_fraction = " + number(a.smallest_fraction) +
                  "; it must be positive and at most 1"};

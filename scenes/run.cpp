@@ -119,6 +119,10 @@ void Run::record(int step, const StepReport& report) {
       (g.quantity == "pressure" ? r.cavities[c].pressure : r.cavities[c].volume) = g.value;
     }
   }
+  if (scene_.analysis.path_step) {
+    r.gauges.push_back(
+        {"path", "equilibrium", "unstable directions", "", static_cast<double>(report.unstable_directions)});
+  }
   for (const EffectId id : built_.dirichlet) {
     const auto [force, moment] = world.reaction(id);
     r.reactions.push_back({force, moment});
@@ -185,9 +189,12 @@ void Run::march(RunOutputs* outputs) {
     interrupted_ = options_.stop && options_.stop();
     StepReport report;
     report.status = StepStatus::cancelled;
-    if (!interrupted_ && !out_of_time()) report = world.advance(plan.h);
+    const auto& path_step = scene_.analysis.path_step;
+    if (!interrupted_ && !out_of_time())
+      report = path_step ? world.follow(*path_step) : world.advance(plan.h);
     const bool over = stopped(report);
-    if (!over || world.time() > before) {
+    const bool last = step == plan.steps || (path_step && world.time() >= scene_.analysis.duration);
+    if (!over || world.time() != before) {
       record(step, report);
       if (options_.on_step) options_.on_step(result_.records.back(), plan.steps);
     } else {
@@ -196,11 +203,11 @@ void Run::march(RunOutputs* outputs) {
       result_.solves += report.iterations + report.corrections;
       add(result_.stages, report.seconds);
     }
-    if (!over && step == plan.steps) {
+    if (!over && last) {
       result_.status = RunStatus::converged;
       result_.reason.clear();
     }
-    if (!write(outputs, over || step == plan.steps) || over) return;
+    if (!write(outputs, over || last) || over || last) return;
   }
 }
 

@@ -76,7 +76,7 @@ struct VolumeRows {
 };
 
 enum class AnalysisType : std::uint8_t { statics, dynamics };
-enum class SchemeWord : std::uint8_t { implicit_euler, bdf2, generalized_alpha, newmark };
+enum class SchemeWord : std::uint8_t { implicit_euler, bdf2, generalized_alpha, newmark, implicit_midpoint };
 
 struct AnalysisDef {
   AnalysisType type = AnalysisType::statics;
@@ -85,11 +85,18 @@ struct AnalysisDef {
   double duration = 1;                             // [s]; statics: final load factor
   int steps = 10;                                  // results are reported this often
   std::optional<double> step;                      // [s], instead of steps
+  // Statics along the path of equilibria, through limit points: length of a step as World::follow() counts it
+  // [m]. `steps` is then the most steps taken, `duration` the load factor that ends the run.
+  std::optional<double> path_step;
+  Method method = Method::automatic;
   Solver solver = Solver::automatic;
   int max_iterations = 60;
   Definiteness definiteness = Definiteness::exact;
   double force_tolerance = 1e-9, row_tolerance = 1e-10;  // see WorldOptions
   double smallest_fraction = 1.0 / 64;
+  bool transient_rescue = true;
+  double time_error = 0;
+  bool consistent_mass = false;
 };
 
 // A named material point: results are interpolated in the cell that holds it at rest.

@@ -279,12 +279,17 @@ void describe(Io& io, AnalysisDef& a) {
   io.not_both("steps", "step");
   io.integer("steps", a.steps, a.step ? a.steps : 10);
   io.optional_number("step", a.step);
+  io.optional_number("path_step", a.path_step);
+  io.word("method", a.method, Method::automatic);
   io.word("solver", a.solver, Solver::automatic);
   io.integer("max_iterations", a.max_iterations, 60);
   io.word("definiteness", a.definiteness, Definiteness::exact);
   io.number("force_tolerance", a.force_tolerance, 1e-9);
   io.number("row_tolerance", a.row_tolerance, 1e-10);
   io.number("smallest_fraction", a.smallest_fraction, 1.0 / 64);
+  io.flag("transient_rescue", a.transient_rescue, true);
+  io.number("time_error", a.time_error, 0.0);
+  io.flag("consistent_mass", a.consistent_mass, false);
 }
 
 template <class Io>
