@@ -123,7 +123,7 @@ class SaddlePoint {
   Kkt kkt_;
   StageSeconds seconds_;
   bool any_clamped_ = false, singular_ = false;
-  double trace_ = 0;  // of compliance in the matrix, where rows repeat each other
+  double trace_ = 0;           // of compliance in the matrix, where rows repeat each other
   double mass_scale_ = 0;      // of this solve
   double shift_ = 0;           // the last one that mended the inertia in this solve
   bool has_gap_ = false;       // given coordinates that are not at their targets yet
