@@ -32,7 +32,8 @@ void DualAscent::evaluate(const SaddleProblem& p, Want want, std::span<const Vec
     any_clamped_ = any_clamped_ || clamped_[r];
   }
   if (want == Want::value) return;
-  assembly_.evaluate(want, Definiteness::exact, x, effective_, p.prescribed);
+  assembly_.evaluate(want, want == Want::hessian ? definiteness_ : Definiteness::exact, x, effective_,
+                     p.prescribed);
   force_residual(p, x);
 }
 
@@ -175,6 +176,7 @@ SaddleReport DualAscent::solve(const SaddleProblem& p, const SaddleOptions& opti
   }
   begin(p);
   factored_ = false;
+  definiteness_ = options.definiteness;
   clamp(lambda);
   const System& s = *system_;
   if (ascent_.augmented && s.rows() > 0) {

@@ -123,12 +123,13 @@ class SaddlePoint {
   Kkt kkt_;
   StageSeconds seconds_;
   bool any_clamped_ = false, singular_ = false;
-  double trace_ = 0;           // of compliance in the matrix, where rows repeat each other
-  double mass_scale_ = 0;      // of this solve
-  double shift_ = 0;           // the last one that mended the inertia in this solve
-  bool has_gap_ = false;       // given coordinates that are not at their targets yet
-  double inertia_energy_ = 0;  // at the last force residual
-  double law_energy_ = 0;      // of the rows with a law of their own, at the last residual
+  double trace_ = 0;       // of compliance in the matrix, where rows repeat each other
+  double mass_scale_ = 0;  // of this solve
+  Definiteness definiteness_ = Definiteness::exact;  // of this solve
+  double shift_ = 0;                                 // the last one that mended the inertia in this solve
+  bool has_gap_ = false;                             // given coordinates that are not at their targets yet
+  double inertia_energy_ = 0;                        // at the last force residual
+  double law_energy_ = 0;  // of the rows with a law of their own, at the last residual
   std::vector<double> theta_, stiffness_, magnitude_, rest_stiffness_, prescribed_phi_;
   // Rows with laws: strain and tangent (one for each compliance entry).
   std::vector<double> strain_, tangent_;
