@@ -22,6 +22,8 @@ void print(const Json& json) {
 std::string mesh_name(const SceneDef& scene) {
   const auto* file = std::get_if<MeshFile>(&scene.bodies[0].mesh);
   if (file) return file->path;
+  if (const auto* lattice = std::get_if<LatticeMesh>(&scene.bodies[0].mesh))
+    return lattice->surface + " in cubes";
   const auto& box = std::get<BoxMeshDef>(scene.bodies[0].mesh);
   return "box " + std::to_string(box.divisions[0]) + " x " + std::to_string(box.divisions[1]) + " x " +
          std::to_string(box.divisions[2]);

@@ -28,9 +28,10 @@ void push_whole_stencil(RowPool& rows, Index stencil, int functions) {
   }
 }
 
-void finish_row(RowPool& rows, double volume, const VolumeRegion& region) {
+// `metric`: the volume over the shear modulus, summed over the stencils of the row.
+void finish_row(RowPool& rows, double volume, double metric) {
   rows.map.offset.push_back(static_cast<Index>(rows.map.item.size()));
-  rows.metric.push_back(volume / region.shear_modulus);
+  rows.metric.push_back(metric);
   rows.measure.push_back(volume);
 }
 
@@ -42,8 +43,8 @@ std::shared_ptr<RowPool> element_volume_rows(const VolumeRegion& region) {
   for (Index s = 0; s < region.pool->stencils(); ++s) {
     const double volume = region.pool->volume(s);
     push_whole_stencil(*rows, s, region.pool->functions());
-    finish_row(*rows, volume, region);
-    rows->compliance.push_back({s, s, volume * region.inverse_bulk / region.stiffness_factor(s)});
+    finish_row(*rows, volume, volume / region.shear_modulus_of(s));
+    rows->compliance.push_back({s, s, volume * region.inverse_bulk_of(s)});
   }
   return rows;
 }
@@ -51,14 +52,16 @@ std::shared_ptr<RowPool> element_volume_rows(const VolumeRegion& region) {
 std::shared_ptr<RowPool> total_volume_row(const VolumeRegion& region) {
   auto rows = std::make_shared<VolumeRowPool>(region.name);
   rows->stencil_pool = region.stencil_pool;
-  double volume = 0, softness = 0;
+  double volume = 0, metric = 0, compliance = 0;
   for (Index s = 0; s < region.pool->stencils(); ++s) {
-    volume += region.pool->volume(s);
-    softness += region.pool->volume(s) / region.stiffness_factor(s);
+    const double V = region.pool->volume(s);
+    volume += V;
+    metric += V / region.shear_modulus_of(s);
+    compliance += V * region.inverse_bulk_of(s);
     push_whole_stencil(*rows, s, region.pool->functions());
   }
-  finish_row(*rows, volume, region);
-  rows->compliance.push_back({0, 0, softness * region.inverse_bulk});
+  finish_row(*rows, volume, metric);
+  rows->compliance.push_back({0, 0, compliance});
   return rows;
 }
 
@@ -75,18 +78,19 @@ std::shared_ptr<RowPool> zone_volume_rows(const VolumeRegion& region, const Volu
   for (std::size_t z = 0; z < zones.stencils.size(); ++z) {
     if (!std::isfinite(inverse_bulk(z))) continue;
     const bool hard = inverse_bulk(z) == 0;
-    double volume = 0, softness = 0;
+    double volume = 0, metric = 0, compliance = 0;
     for (const Index s : zones.stencils[z]) {
       const double weight = hard ? 1 : 1 / sharing[at(s)], share = weight * pool.volume(s);
       volume += share;
-      softness += share / region.stiffness_factor(s);
+      metric += share / region.shear_modulus_of(s);
+      compliance += share * zones.compliance[z] * region.inverse_bulk_of(s);
       for (int k = 0; k < pool.functions(); ++k) {
         rows->map.item.push_back(s * pool.functions() + k);
         rows->weight.push_back(weight);
       }
     }
-    if (!hard) rows->compliance.push_back({rows->rows(), rows->rows(), softness * inverse_bulk(z)});
-    finish_row(*rows, volume, region);
+    if (!hard) rows->compliance.push_back({rows->rows(), rows->rows(), compliance});
+    finish_row(*rows, volume, metric);
   }
   return rows;
 }
@@ -140,11 +144,11 @@ std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double ta
     return static_cast<Index>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
   };
   std::vector<std::vector<std::pair<Index, double>>> terms(nodes.size());
-  std::vector<double> volume(nodes.size(), 0);
+  std::vector<double> volume(nodes.size(), 0), metric(nodes.size(), 0);
   std::map<std::pair<Index, Index>, double> compliance;
   const bool per_corner = data.functions == region.corners;
   for (Index s = 0; s < pool.stencils(); ++s) {
-    const double V = pool.volume(s), factor = region.stiffness_factor(s);
+    const double V = pool.volume(s), mu = region.shear_modulus_of(s), bulk = region.inverse_bulk_of(s);
     Index row[8];
     double share[8] = {};  // integral of N_k
     for (std::size_t k = 0; k < corners; ++k) {
@@ -159,10 +163,10 @@ std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double ta
       for (std::size_t l = 0; l < corners; ++l) {
         const double mass = pressure_mass(data, s, V, kk, static_cast<int>(l));
         volume[at(row[k])] += mass;
+        metric[at(row[k])] += mass / mu;
         if (row[k] < row[l]) continue;
-        double c = mass * region.inverse_bulk;
-        if (tau > 0) c += tau / region.shear_modulus * (mass - share[k] * share[l] / V);
-          c /= factor;
+        double c = mass * bulk;
+        if (tau > 0) c += tau / mu * (mass - share[k] * share[l] / V);
         if (c != 0) compliance[{row[k], row[l]}] += c;
       }
     }
@@ -172,7 +176,7 @@ std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double ta
       rows->map.item.push_back(function);
       rows->weight.push_back(weight);
     }
-    finish_row(*rows, volume[r], region);
+    finish_row(*rows, volume[r], metric[r]);
   }
   for (const auto& [ends, value] : compliance) rows->compliance.push_back({ends.first, ends.second, value});
   if (corner_nodes) *corner_nodes = nodes;

@@ -13,13 +13,18 @@ struct VolumeRegion {
   Index stencil_pool = -1;
   const SolidPool* pool = nullptr;
   int corners = 4;           // the first `corners` nodes of a stencil carry the linear pressure
-  double inverse_bulk = 0;   // 1/kappa [1/Pa]; 0: hard rows
+  double inverse_bulk = 0;   // 1/kappa [1/Pa], of the softest cell; 0: hard rows
   double shear_modulus = 1;  // mu [Pa], for the row metric and the stabilization
-  const MaterialModel* material = nullptr;  // where its stiffness varies from cell to cell
+  const MaterialModel* material = nullptr;  // where its constants vary from cell to cell
 
-  // By how much a stencil is stiffer than the numbers above say.
-  double stiffness_factor(Index stencil) const {
-    return material ? material->stiffness_factor(pool->data().cell[at(stencil)]) : 1;
+  // The same for one stencil. Without a bulk compliance in the region (hard rows) no cell has one.
+  double inverse_bulk_of(Index stencil) const {
+    return material && inverse_bulk > 0 ? material->inverse_bulk_of(pool->data().cell[at(stencil)])
+                                        : inverse_bulk;
+  }
+  double shear_modulus_of(Index stencil) const {
+    return material ? shear_modulus * material->stiffness_factor(pool->data().cell[at(stencil)])
+                    : shear_modulus;
   }
 };
 

@@ -222,6 +222,20 @@ static std::shared_ptr<const Material> for_stencils(std::shared_ptr<const Materi
   return energy;
 }
 
+// A barrier would falsify the true compression of a compressible material, so it is for the others by
+// default. Null where no cell has one. Its elements are the cells of the region, in their order.
+static std::shared_ptr<const Material> element_guard(const BodyData& body, const RegionData& region) {
+  const MaterialModel& material = *region.material;
+  std::vector<double> stiffness;
+  for (const Index c : region.cells) {
+    const double b = body.guard_stiffness.value_or(material.poisson_of(c) >= 0.49 ? 1.0 : 0.0);
+    stiffness.push_back(b * material.shear_modulus() * material.stiffness_factor(c));
+  }
+  const bool any = std::any_of(stiffness.begin(), stiffness.end(), [](double b) { return b > 0; });
+  if (!any) return nullptr;
+  return std::make_shared<ElementGuard>(std::move(stiffness), body.guard_threshold);
+}
+
 // Elastic energy and volume functions share a stencil where both live on the cell; edge patches have their
 // own.
 Result<void> Builder::build_region(BodyData& body, RegionData& region) {
@@ -261,12 +275,7 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
     region.elastic_pool =
         add_stencils(std::make_shared<SolidPool>(body.name + "/" + region.name + "/patches",
                                                  std::move(patches).value(), energy, VolumeStrain::linear));
-    // A barrier would falsify the true compression of a compressible material, so it is for the others by
-    // default.
-    const double b = body.guard_stiffness.value_or(region.material->poisson() >= 0.49 ? 1.0 : 0.0);
-    energy = b > 0
-                 ? std::make_shared<ElementGuard>(b * region.material->shear_modulus(), body.guard_threshold)
-                 : nullptr;
+    energy = element_guard(body, region);
   }
   for (std::size_t strain = 0; strain < 2; ++strain) {
     const bool wanted = region.volume_wanted[strain];

@@ -29,6 +29,12 @@ class MaterialModel {
     (void)cell;
     return 1;
   }
+  // 1/kappa and small-strain nu of a cell.
+  virtual double inverse_bulk_of(Index cell) const { return inverse_bulk() / stiffness_factor(cell); }
+  virtual double poisson_of(Index cell) const {
+    (void)cell;
+    return poisson();
+  }
 };
 
 }  // namespace isochor

@@ -77,19 +77,23 @@ class PenalizedModel final : public MaterialModel {
   }
   double shear_modulus() const override { return base_->shear_modulus(); }
   double inverse_bulk() const override { return base_->inverse_bulk(); }
-  // The penalty adds its modulus to the first Lamé parameter: nu = lambda / (2 (lambda + mu)).
-  double poisson() const override {
-    const double nu = base_->poisson(), mu = shear_modulus();
-    if (nu == 0.5) return nu;
-    const double lambda = 2 * mu * nu / (1 - 2 * nu) + penalty_.modulus;
-    return lambda / (2 * (lambda + mu));
-  }
+  double poisson() const override { return with_penalty(base_->poisson(), shear_modulus()); }
   double young() const override { return 2 * shear_modulus() * (1 + poisson()); }
   bool defined_inverted() const override { return base_->defined_inverted(); }
   std::size_t field_cells() const override { return base_->field_cells(); }
   double stiffness_factor(Index cell) const override { return base_->stiffness_factor(cell); }
+  double inverse_bulk_of(Index cell) const override { return base_->inverse_bulk_of(cell); }
+  double poisson_of(Index cell) const override {
+    return with_penalty(base_->poisson_of(cell), shear_modulus() * stiffness_factor(cell));
+  }
 
  private:
+  // The penalty adds its modulus to the first Lamé parameter: nu = lambda / (2 (lambda + mu)).
+  double with_penalty(double nu, double mu) const {
+    if (nu == 0.5) return nu;
+    const double lambda = 2 * mu * nu / (1 - 2 * nu) + penalty_.modulus;
+    return lambda / (2 * (lambda + mu));
+  }
   MaterialPtr base_;
   std::string name_;
   PenaltyEnergy penalty_;

@@ -162,6 +162,8 @@ class FiberModel final : public MaterialModel {
   bool defined_inverted() const override { return matrix_->defined_inverted(); }
   std::size_t field_cells() const override { return cells_ > 0 ? cells_ : matrix_->field_cells(); }
   double stiffness_factor(Index cell) const override { return matrix_->stiffness_factor(cell); }
+  double inverse_bulk_of(Index cell) const override { return matrix_->inverse_bulk_of(cell); }
+  double poisson_of(Index cell) const override { return matrix_->poisson_of(cell); }
 
  private:
   MaterialPtr matrix_;

@@ -81,6 +81,10 @@ class ScaledModel final : public MaterialModel {
   double stiffness_factor(Index cell) const override {
     return base_->stiffness_factor(cell) * factor_[at(cell)];
   }
+  double inverse_bulk_of(Index cell) const override {
+    return base_->inverse_bulk_of(cell) / factor_[at(cell)];
+  }
+  double poisson_of(Index cell) const override { return base_->poisson_of(cell); }
 
  private:
   MaterialPtr base_;

@@ -1,10 +1,9 @@
 #include <cmath>
-#include <filesystem>
 #include <set>
 
 #include "isochor/mesh_io.h"
 #include "isochor/schemes.h"
-#include "scenes/scene.h"
+#include "scenes/body_parts.h"
 
 namespace isochor {
 
@@ -27,17 +26,16 @@ SchemePtr make_scheme(const AnalysisDef& a) {
   return nullptr;
 }
 
-std::string in_folder(const SceneDef& scene, const std::string& file) {
-  const std::filesystem::path path(file);
-  return (path.is_relative() ? std::filesystem::path(scene.folder) / path : path).lexically_normal().string();
-}
-
-Result<Mesh> make_mesh(const SceneBody& body, const std::string& folder) {
+Result<Mesh> make_mesh(const SceneBody& body, const std::string& folder, DisplaySurface& surface) {
+  if (const auto* lattice = std::get_if<LatticeMesh>(&body.mesh)) {
+    auto made = make_lattice(*lattice, folder);
+    if (!made) return Error{made.error()};
+    surface = std::move(made.value().surface);
+    return std::move(made.value().mesh);
+  }
   if (const auto* box = std::get_if<BoxMeshDef>(&body.mesh)) return box_mesh(*box);
   const auto& file = std::get<MeshFile>(body.mesh);
-  std::filesystem::path path(file.path);
-  if (path.is_relative()) path = std::filesystem::path(folder) / path;
-  auto mesh = read_mesh(path.lexically_normal().string(), {file.scale});
+  auto mesh = read_mesh(path_in(folder, file.path), {file.scale});
   if (mesh) {
     for (Vec3& x : mesh.value().nodes) x += file.offset;
   }
@@ -56,11 +54,11 @@ Result<void> add_bodies(const SceneDef& scene, const BuildOptions& options, Buil
     def.element = body.element;
     def.guard_stiffness = body.guard_stiffness;
     def.guard_threshold = body.guard_threshold;
-    auto mesh = make_mesh(body, scene.folder);
+    auto mesh = make_mesh(body, scene.folder, built.surfaces.emplace_back());
     if (!mesh) return Error{place("bodies", b) + ".mesh: " + mesh.error()};
     def.mesh = std::move(mesh).value();
     for (std::size_t m = 0; m < body.materials.size(); ++m) {
-      auto material = make_material(body.materials[m]);
+      auto material = make_material(body.materials[m], scene.folder);
       if (!material) return Error{place("bodies", b) + "." + place("materials", m) + ": " + material.error()};
       def.materials.push_back(
           {body.materials[m].region, std::move(material).value(), body.materials[m].density});
@@ -98,7 +96,7 @@ Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, Bui
   for (std::size_t d = 0; d < scene.dirichlet.size(); ++d) {
     DirichletDef def = scene.dirichlet[d];
     if (def.bone.keys.empty() && !def.bone.file.empty()) {
-      auto track = read_poses(in_folder(scene, def.bone.file));
+      auto track = read_poses(path_in(scene.folder, def.bone.file));
       if (!track) return Error{place("dirichlet", d) + ".bone: " + track.error()};
       def.bone = std::move(track).value();
     }

@@ -211,11 +211,31 @@ Result<void> check_metrics(const SceneDef& s) {
   return {};
 }
 
+Result<void> check_lattice(const std::string& where, const LatticeMesh& lattice, Element element) {
+  if (lattice.surface.empty()) return Error{where + ".surface is empty; name a file with a closed surface"};
+  if (!(lattice.scale > 0) || !std::isfinite(lattice.scale)) {
+    return Error{where + ".scale = " + number(lattice.scale) + "; it must be a positive number"};
+  }
+  if (!std::isfinite(dot(lattice.offset, lattice.offset)))
+    return Error{where + ".offset has a coordinate that is no finite number"};
+  if (!(lattice.spacing > 0) || !std::isfinite(lattice.spacing)) {
+    return Error{where + ".spacing = " + number(lattice.spacing) +
+                 " m; it must be a positive number, the edge of a cube"};
+  }
+  if (element != Element::hex8)
+    return Error{where + ": its cells are hexahedra; set \"element\" of the body to \"hex8\""};
+  return {};
+}
+
 Result<void> check_bodies(const SceneDef& s) {
   if (s.bodies.empty()) return Error{"bodies is empty; a scene needs at least one body"};
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     if (s.bodies[b].materials.empty()) {
       return Error{place("bodies", b) + ".materials is empty; give the body a material"};
+    }
+    if (const auto* lattice = std::get_if<LatticeMesh>(&s.bodies[b].mesh)) {
+      if (auto r = check_lattice(place("bodies", b) + ".mesh.lattice", *lattice, s.bodies[b].element); !r)
+        return r;
     }
     const auto* file = std::get_if<MeshFile>(&s.bodies[b].mesh);
     if (!file) continue;

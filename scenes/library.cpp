@@ -8,7 +8,7 @@ namespace isochor {
 
 namespace {
 
-constexpr std::array<LibraryScene, 17> kScenes{{
+constexpr std::array<LibraryScene, 18> kScenes{{
     {"finger", "Bending finger with bellows and a limiting layer, 10 kPa", finger},
     {"tube", "Inflated tube, ends held, 10 kPa", tube},
     {"cushion", "Cushion, 10 kPa", cushion},
@@ -25,6 +25,7 @@ constexpr std::array<LibraryScene, 17> kScenes{{
     {"torsion", "Solid cylinder, one end turned", torsion},
     {"cable_finger", "Slender arm bent by a cable that is shortened by a tenth", cable_finger},
     {"gas_tube", "Closed tube into which air flows, isothermal", gas_tube},
+    {"finger_lattice", "Finger in a lattice of cubes, hanging", finger_lattice},
     {"two_chambers", "Two domes whose air equalizes when a valve opens", two_chambers},
 }};
 

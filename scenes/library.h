@@ -31,6 +31,7 @@ SceneDef tube(const SceneVariant& variant = {});
 SceneDef cushion(const SceneVariant& variant = {});
 SceneDef bubble(const SceneVariant& variant = {});
 SceneDef finger(const SceneVariant& variant = {});
+SceneDef finger_lattice(const SceneVariant& variant = {});
 SceneDef spine(const SceneVariant& variant = {});
 SceneDef cantilever(const SceneVariant& variant = {});
 SceneDef cantilever_tenth(const SceneVariant& variant = {});

@@ -1,4 +1,4 @@
-#include "scenes/scene.h"
+#include "scenes/body_parts.h"
 
 namespace isochor {
 
@@ -99,13 +99,38 @@ static Result<MaterialPtr> make_matrix(const MaterialDef& def) {
   }
 }
 
-Result<MaterialPtr> make_material(const MaterialDef& def) {
-  auto matrix = make_matrix(def);
+// The matrix with the fields of its constants.
+static Result<MaterialPtr> make_varied(const MaterialDef& def, const std::string& folder) {
+  if (!def.poisson_field.given()) return make_matrix(def);
+  auto poisson = read_field(def.poisson_field, folder);
+  if (!poisson) return Error{"poisson_field: " + poisson.error()};
+  const ElasticConstants& c = def.constants;
+  if (c.poisson != 0 || c.lambda != -1 || c.bulk != -1) {
+    return Error{"poisson_field is given beside " +
+                 std::string(c.poisson != 0   ? "poisson"
+                             : c.lambda != -1 ? "lambda"
+                                              : "bulk") +
+                 "; it takes its place, remove one of them"};
+  }
+  return with_poisson_field(
+      [&](double nu) {
+        MaterialDef one = def;
+        one.constants.poisson = nu;
+        return make_matrix(one);
+      },
+      poisson.value());
+}
+
+Result<MaterialPtr> make_material(const MaterialDef& def, const std::string& folder) {
+  auto matrix = make_varied(def, folder);
   if (matrix && !def.fibers.empty()) matrix = with_fibers(std::move(matrix).value(), def.fibers);
   const CompressionPenalty& penalty = def.compression_penalty;
   const bool penalized = penalty.modulus != 0 || penalty.beta != CompressionPenalty{}.beta;
-  if (!matrix || !penalized) return matrix;
-  return with_compression_penalty(std::move(matrix).value(), penalty);
+  if (matrix && penalized) matrix = with_compression_penalty(std::move(matrix).value(), penalty);
+  if (!matrix || !def.stiffness_field.given()) return matrix;
+  auto factor = read_field(def.stiffness_field, folder);
+  if (!factor) return Error{"stiffness_field: " + factor.error()};
+  return with_stiffness_field(std::move(matrix).value(), std::move(factor).value());
 }
 
 }  // namespace isochor

@@ -29,6 +29,14 @@ std::vector<double> at_nodes(const Mesh& mesh, const std::vector<double>& cells)
   return sum;
 }
 
+// What the nodes of a cell say at a point in it.
+template <class Read>
+auto interpolated(const EmbeddedPoint& p, const Read& read) {
+  auto sum = p.weights[0] * read(static_cast<std::size_t>(p.nodes[0]));
+  for (std::size_t a = 1; a < 8; ++a) sum += p.weights[a] * read(static_cast<std::size_t>(p.nodes[a]));
+  return sum;
+}
+
 // Gravity tells which way is up; without it the y axis of these scenes is.
 char up_axis(const SceneDef& scene) {
   return std::abs(scene.gravity.z) > std::abs(scene.gravity.y) ? 'z' : 'y';
@@ -138,14 +146,36 @@ PageReport report(const RunView& view) {
 
 }  // namespace
 
+namespace {
+
+// The surface in a lattice as a part of its own, in place of the cubes.
+std::vector<EmbeddedPoint> add_page_surface(PageScene& scene, const Mesh& mesh, const DisplaySurface& surface,
+                                            const PagePart& part) {
+  const auto first = static_cast<Index>(scene.rest.size()), number = static_cast<Index>(scene.parts.size());
+  scene.parts.push_back(part);
+  for (const EmbeddedPoint& p : surface.points)
+    scene.rest.push_back(interpolated(p, [&](std::size_t n) { return mesh.nodes[n]; }));
+  for (const Index i : surface.triangles) scene.triangles.push_back(first + i);
+  scene.triangle_part.resize(scene.triangles.size() / 3, number);
+  scene.triangle_edges.resize(scene.triangles.size() / 3, 7);
+  return surface.points;
+}
+
+}  // namespace
+
 std::unique_ptr<RunPage> RunPage::start(const RunView& view) {
   if (!results_page_available()) return nullptr;
   PageScene scene;
-  std::vector<std::vector<Index>> vertices;
+  std::vector<Vertices> vertices;
   for (std::size_t b = 0; b < view.built.bodies.size(); ++b) {
     PagePart part;
     part.name = view.scene.bodies[b].name;
-    vertices.push_back(add_page_mesh(scene, view.built.world.mesh(view.built.bodies[b]), part));
+    const Mesh& mesh = view.built.world.mesh(view.built.bodies[b]);
+    const DisplaySurface& surface = view.built.surfaces[b];
+    if (surface.points.empty())
+      vertices.push_back({add_page_mesh(scene, mesh, part), {}});
+    else
+      vertices.push_back({{}, add_page_surface(scene, mesh, surface, part)});
   }
   scene.fields = page_fields();
   scene.probes = view.result.probes;
@@ -168,14 +198,24 @@ void RunPage::append(const RunView& view, const std::vector<BodyFields>& fields)
     const auto x = world.positions(id), rest = world.rest_positions(id);
     const auto von_mises = at_nodes(world.mesh(id), fields[b].cell_von_mises);
     const auto J = at_nodes(world.mesh(id), fields[b].cell_J);
-    for (const Index node : vertices_[b]) {
-      const auto n = static_cast<std::size_t>(node);
-      const Vec3 u = x[n] - rest[n];
-      frame.positions.push_back(x[n]);
+    const auto add = [&](const Vec3& here, const Vec3& start, double pressure, double mises, double ratio) {
+      const Vec3 u = here - start;
+      frame.positions.push_back(here);
       frame.fields[0].push_back(std::sqrt(dot(u, u)));
-      frame.fields[1].push_back(fields[b].node_pressure[n]);
-      frame.fields[2].push_back(von_mises[n]);
-      frame.fields[3].push_back(J[n]);
+      frame.fields[1].push_back(pressure);
+      frame.fields[2].push_back(mises);
+      frame.fields[3].push_back(ratio);
+    };
+    const auto& pressure = fields[b].node_pressure;
+    for (const Index node : vertices_[b].nodes) {
+      const auto n = static_cast<std::size_t>(node);
+      add(x[n], rest[n], pressure[n], von_mises[n], J[n]);
+    }
+    for (const EmbeddedPoint& p : vertices_[b].points) {
+      const auto of = [&](const auto& list) {
+        return interpolated(p, [&](std::size_t n) { return list[n]; });
+      };
+      add(of(x), of(rest), of(pressure), of(von_mises), of(J));
     }
   }
   const auto& displacement = view.result.records.back().probes;

@@ -18,11 +18,16 @@ class RunPage {
   Result<void> write(const RunView& view, const std::string& path);
 
  private:
-  RunPage(ResultsRecorder recorder, std::vector<std::vector<Index>> vertices)
+  // The node of each vertex; for the surface in a lattice its points instead.
+  struct Vertices {
+    std::vector<Index> nodes;
+    std::vector<EmbeddedPoint> points;
+  };
+  RunPage(ResultsRecorder recorder, std::vector<Vertices> vertices)
       : recorder_(std::move(recorder)), vertices_(std::move(vertices)) {}
 
   ResultsRecorder recorder_;
-  std::vector<std::vector<Index>> vertices_;  // by body: the node of each vertex
+  std::vector<Vertices> vertices_;  // by body
   std::string failure_;
 };
 

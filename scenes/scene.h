@@ -11,6 +11,7 @@
 
 #include "isochor/effects.h"
 #include "isochor/generate.h"
+#include "isochor/lattice.h"
 #include "isochor/world.h"
 
 namespace isochor {
@@ -44,6 +45,13 @@ struct LawConstants {
   double threshold = 0.1;              // isochoric_extended [-]
 };
 
+// Numbers cell by cell, in the order of the cells of the body's mesh: in place or in a text file.
+struct CellField {
+  std::vector<double> values;
+  std::string file;  // relative to SceneDef::folder
+  bool given() const { return !values.empty() || !file.empty(); }
+};
+
 struct MaterialDef {
   std::string region;  // empty: every region not named elsewhere
   MaterialLaw law = MaterialLaw::neo_hookean;
@@ -51,6 +59,8 @@ struct MaterialDef {
   LawConstants own;
   std::vector<FiberFamily> fibers;
   CompressionPenalty compression_penalty;  // as it is made: none
+  CellField stiffness_field;               // factors on the stiffness of the material
+  CellField poisson_field;                 // Poisson's ratios, in place of the one of `constants`
   double density = 1000;                   // [kg/m^3]
 };
 
@@ -60,9 +70,20 @@ struct MeshFile {
   Vec3 offset{};     // added to the scaled coordinates [m]
 };
 
+// Cubes around a closed surface, which is what results show.
+struct LatticeMesh {
+  std::string
+      surface;  // Wavefront (.obj) or a volume mesh, whose boundary it is; relative to SceneDef::folder
+  double scale = 1;
+  Vec3 offset{};       // as for files [m]
+  double spacing = 0;  // edge of a cube [m]
+  int samples = 4;     // see LatticeDef
+  bool keep_apart = true;
+};
+
 struct SceneBody {
   std::string name = "body";
-  std::variant<MeshFile, BoxMeshDef> mesh;
+  std::variant<MeshFile, BoxMeshDef, LatticeMesh> mesh;
   Element element = Element::tet4_edge_smoothed;
   std::vector<MaterialDef> materials;
   std::optional<double> guard_stiffness;  // see BodyDef
@@ -183,10 +204,17 @@ StepPlan plan_steps(const AnalysisDef& analysis);
 // exist, steps that do not divide. Messages start with the place, as in "metrics[2].of".
 Result<void> check_scene(const SceneDef& scene);
 
+// A surface that moves with the cells of a lattice.
+struct DisplaySurface {
+  std::vector<Index> triangles;
+  std::vector<EmbeddedPoint> points;
+};
+
 struct BuiltScene {
   World world;
   std::vector<BodyId> bodies;
   std::vector<EffectId> dirichlet, cavities, tractions, forces, cables, valves;
+  std::vector<DisplaySurface> surfaces = {};  // by body; empty where its mesh is shown
 };
 
 // What build() hands to the world.
@@ -200,8 +228,9 @@ struct BuildOptions {
   SceneParts* parts = nullptr;  // where given: copies of bodies and effects are put here
 };
 
-// The material of a definition; messages name the law and the constant.
-Result<MaterialPtr> make_material(const MaterialDef& def);
+// The material of a definition; messages name the law and the constant. Files of fields are looked for in
+// `folder`.
+Result<MaterialPtr> make_material(const MaterialDef& def, const std::string& folder = "");
 
 // Reads meshes, makes materials and effects, compiles the world. Errors are those of bad input.
 Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options = {});

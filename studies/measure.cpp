@@ -153,6 +153,8 @@ std::string fingerprint(const Cell& cell, int threads, int repeats) {
   for (const SceneBody& body : cell.scene.bodies) {
     if (const auto* file = std::get_if<MeshFile>(&body.mesh))
       fnv.add_file(std::filesystem::path(cell.scene.folder) / file->path);
+    if (const auto* lattice = std::get_if<LatticeMesh>(&body.mesh))
+      fnv.add_file(std::filesystem::path(cell.scene.folder) / lattice->surface);
   }
   fnv.add(std::to_string(cell.threads > 0 ? cell.threads : threads) + " " + std::to_string(repeats));
   return fnv.text();

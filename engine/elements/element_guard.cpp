@@ -59,18 +59,20 @@ void ElementGuard::evaluate(Want want, const PointBatch& points, ResponseBatch& 
     if (want == Want::hessian) {
       for (int i = 0; i < 45; ++i) r.A[i][l] = 0;
     }
-    if (!(J >= threshold_)) evaluate_lane(want, points, r, l, b_, J, threshold_, g);
+    const double b = b_[at(points.element[l])];
+    if (b > 0 && !(J >= threshold_)) evaluate_lane(want, points, r, l, b, J, threshold_, g);
   }
 }
 
-void ElementGuard::spectrum(const PointBatch&, const Svd3& svd, Spectrum& out) const {
+void ElementGuard::spectrum(const PointBatch& points, const Svd3& svd, Spectrum& out) const {
   Lanes first = {}, second = {};
   for (int l = 0; l < kLanes; ++l) {
     const double J = svd.sigma[0][l] * svd.sigma[1][l] * svd.sigma[2][l];
     if (!(J > 0) || J >= threshold_) continue;
     const double q = std::log(J / threshold_);
-    first[l] = -3 * b_ * q * q / J;
-    second[l] = -3 * b_ * (2 * q - q * q) / (J * J);
+    const double b = b_[at(points.element[l])];
+    first[l] = -3 * b * q * q / J;
+    second[l] = -3 * b * (2 * q - q * q) / (J * J);
   }
   out = {};
   add_volume(svd, second, first, out);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "engine/material.h"
 
@@ -13,13 +14,16 @@ namespace isochor {
 // differentiable, infinite at J = 0.
 class ElementGuard final : public Material {
  public:
-  ElementGuard(double stiffness, double threshold) : b_(stiffness), threshold_(threshold) {}
+  // One stiffness [Pa] an element; 0 where the guard is off.
+  ElementGuard(std::vector<double> stiffness, double threshold)
+      : b_(std::move(stiffness)), threshold_(threshold) {}
   std::string_view name() const override { return "element_guard"; }
   void evaluate(Want want, const PointBatch& points, ResponseBatch& response) const override;
   void spectrum(const PointBatch& points, const Svd3& svd, Spectrum& out) const override;
 
  private:
-  double b_, threshold_;
+  std::vector<double> b_;
+  double threshold_;
 };
 
 }  // namespace isochor

@@ -1,6 +1,7 @@
 // Hyperelastic materials a body can be made of.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -127,6 +128,12 @@ Result<MaterialPtr> with_fibers(MaterialPtr matrix, const std::vector<FiberFamil
 // Stiffness that varies from cell to cell at the same Poisson's ratio: energy and bulk modulus times a
 // positive factor, one a cell of the body's mesh.
 Result<MaterialPtr> with_stiffness_field(MaterialPtr base, std::vector<double> factor);
+
+// Poisson's ratio that varies from cell to cell: `law` makes the material for one ratio, its other constants
+// are its own affair (with E fixed the shear modulus changes with nu). 0.5 is allowed where volume rows carry
+// the bulk modulus; a ratio that leaves the law no volume part (kappa = 0) is refused.
+Result<MaterialPtr> with_poisson_field(const std::function<Result<MaterialPtr>(double)>& law,
+                                       const std::vector<double>& poisson);
 
 // Lambda U(J; beta) with U = (J - 1)^2 (beta (J - 1)^2 + 6) / 12, added to the energy of every element: holds
 // single elements against crushing where volume rows keep only the volume of a zone (Sheen, Larionov & Pai

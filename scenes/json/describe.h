@@ -32,6 +32,12 @@ void describe(Io& io, CompressionPenalty& p) {
 }
 
 template <class Io>
+void describe(Io& io, CellField& f) {
+  io.numbers("values", f.values);
+  io.text("file", f.file);
+}
+
+template <class Io>
 void describe(Io& io, MaterialDef& m) {
   io.text("region", m.region);
   io.word("law", m.law, MaterialLaw::neo_hookean);
@@ -53,6 +59,8 @@ void describe(Io& io, MaterialDef& m) {
   io.number("threshold", m.own.threshold, 0.1);
   io.list("fibers", m.fibers);
   io.optional_object("compression_penalty", m.compression_penalty, m.compression_penalty.modulus != 0);
+  io.optional_object("stiffness_field", m.stiffness_field, m.stiffness_field.given());
+  io.optional_object("poisson_field", m.poisson_field, m.poisson_field.given());
   io.number("density", m.density, 1000.0);
 }
 
@@ -64,19 +72,30 @@ void describe(Io& io, BoxMeshDef& b) {
   io.word("cell_type", b.cell_type, CellType::tet4);
 }
 
-// A file with its scale, or a generated box.
+template <class Io>
+void describe(Io& io, LatticeMesh& l) {
+  io.required_text("surface", l.surface);
+  io.number("scale", l.scale, 1.0);
+  io.vector("offset", l.offset, Vec3{});
+  io.number("spacing", l.spacing, 0.0);
+  io.integer("samples", l.samples, 4);
+  io.flag("keep_apart", l.keep_apart, true);
+}
+
+// A file with its scale, a generated box, or a lattice.
 struct MeshSource {
-  std::variant<MeshFile, BoxMeshDef>& mesh;
+  std::variant<MeshFile, BoxMeshDef, LatticeMesh>& mesh;
 };
 template <class Io>
 void describe(Io& io, MeshSource& m) {
-  io.either("file", "box", m.mesh);
+  io.either("file", "box", "lattice", m.mesh);
   if (auto* file = std::get_if<MeshFile>(&m.mesh)) {
     io.required_text("file", file->path);
     io.number("scale", file->scale, 1.0);
     io.vector("offset", file->offset, Vec3{});
   }
   if (auto* box = std::get_if<BoxMeshDef>(&m.mesh)) io.object("box", *box);
+  if (auto* lattice = std::get_if<LatticeMesh>(&m.mesh)) io.object("lattice", *lattice);
 }
 
 template <class Io>

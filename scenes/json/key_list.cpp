@@ -26,6 +26,7 @@ class KeyList {
   void integers(const char* key, std::array<int, 3>&) { add(key, "integers"); }
   void names(const char* key, std::vector<std::string>&) { add(key, "names"); }
   void indices(const char* key, std::vector<Index>&) { add(key, "indices"); }
+  void numbers(const char* key, std::vector<double>&) { add(key, "numbers"); }
   void points(const char* key, std::vector<Vec3>&) { add(key, "points"); }
   void boxes(const char* key, std::vector<std::array<Vec3, 2>>&) { add(key, "boxes"); }
   void directions(const char* key, std::vector<Vec3>&) { add(key, "directions"); }
@@ -38,10 +39,13 @@ class KeyList {
   void required_curve(const char* key, Curve&, CurveStart) { add(key, "curve"); }
   void note(const char* key) { add(key, "text"); }
   void not_both(const char*, const char*) {}
-  // The description looks into one form of a mesh; the other is told here.
-  void either(const char*, const char* box, std::variant<MeshFile, BoxMeshDef>&) {
+  // The description looks into one form of a mesh; the others are told here.
+  void either(const char*, const char* box, const char* lattice,
+              std::variant<MeshFile, BoxMeshDef, LatticeMesh>&) {
     BoxMeshDef def;
     object(box, def);
+    LatticeMesh cubes;
+    object(lattice, cubes);
   }
   template <class E>
   void word(const char* key, E&, E) {

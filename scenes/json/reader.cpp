@@ -207,6 +207,14 @@ void Reader::indices(const char* key, std::vector<Index>& value) {
   }
 }
 
+void Reader::numbers(const char* key, std::vector<double>& value) {
+  const Json* j = find(key);
+  if (!j || !expect_list(*j, key)) return;
+  for (std::size_t i = 0; i < j->size(); ++i) {
+    if (!read_number((*j)[i], at(key) + "[" + std::to_string(i) + "]", value.emplace_back())) return;
+  }
+}
+
 void Reader::optional_vector(const char* key, std::optional<Vec3>& value) {
   if (const Json* j = find(key)) read_vector(*j, at(key), value.emplace());
 }
@@ -338,17 +346,23 @@ void Reader::not_both(const char* a, const char* b) {
   }
 }
 
-void Reader::either(const char* file, const char* box, std::variant<MeshFile, BoxMeshDef>& mesh) {
+void Reader::either(const char* file, const char* box, const char* lattice,
+                    std::variant<MeshFile, BoxMeshDef, LatticeMesh>& mesh) {
   not_both(file, box);
+  not_both(file, lattice);
+  not_both(box, lattice);
   if (!json_.is_object()) return;
-  if (!json_.contains(file) && !json_.contains(box)) {
-    fail_here(std::string("\"") + file + "\" or \"" + box + "\" is missing");
+  if (!json_.contains(file) && !json_.contains(box) && !json_.contains(lattice)) {
+    fail_here(std::string("\"") + file + "\", \"" + box + "\" or \"" + lattice + "\" is missing");
   }
-  // The list of known keys is that of both forms.
-  for (const char* key : {file, box, "scale"}) known_.emplace_back(key);
+  // The list of known keys is that of all forms.
+  for (const char* key : {file, box, lattice, "scale"}) known_.emplace_back(key);
   if (json_.contains(box)) mesh = BoxMeshDef{};
+  if (json_.contains(lattice)) mesh = LatticeMesh{};
   if (json_.contains(box) && json_.contains("scale"))
     fail_here("\"scale\" belongs to a file; give the box its size");
+  if (json_.contains(lattice) && json_.contains("scale"))
+    fail_here("\"scale\" belongs to a file; a lattice has its own inside");
 }
 
 void Reader::finish() {

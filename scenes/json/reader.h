@@ -49,6 +49,7 @@ class Reader {
   void integers(const char* key, std::array<int, 3>& value);
   void names(const char* key, std::vector<std::string>& value);  // a list, or one name
   void indices(const char* key, std::vector<Index>& value);
+  void numbers(const char* key, std::vector<double>& value);
   void points(const char* key, std::vector<Vec3>& value);
   void boxes(const char* key, std::vector<std::array<Vec3, 2>>& value);
   void directions(const char* key, std::vector<Vec3>& value);  // "xz", or vectors
@@ -58,7 +59,8 @@ class Reader {
   void required_curve(const char* key, Curve& value, CurveStart start);
   void note(const char* key);
   void not_both(const char* a, const char* b);
-  void either(const char* file, const char* box, std::variant<MeshFile, BoxMeshDef>& mesh);
+  void either(const char* file, const char* box, const char* lattice,
+              std::variant<MeshFile, BoxMeshDef, LatticeMesh>& mesh);
 
   template <class E>
   void word(const char* key, E& value, E) {

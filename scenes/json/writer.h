@@ -56,6 +56,9 @@ class Writer {
   void indices(const char* key, const std::vector<Index>& value) {
     if (!value.empty()) json_[key] = value;
   }
+  void numbers(const char* key, const std::vector<double>& value) {
+    if (!value.empty()) json_[key] = value;
+  }
   void points(const char* key, const std::vector<Vec3>& value);
   void boxes(const char* key, const std::vector<std::array<Vec3, 2>>& value);
   void directions(const char* key, const std::vector<Vec3>& value);
@@ -67,7 +70,8 @@ class Writer {
   void required_curve(const char* key, const Curve& value, CurveStart start);
   void note(const char*) {}
   void not_both(const char*, const char*) {}
-  void either(const char*, const char*, const std::variant<MeshFile, BoxMeshDef>&) {}
+  void either(const char*, const char*, const char*, const std::variant<MeshFile, BoxMeshDef, LatticeMesh>&) {
+  }
 
   template <class E>
   void word(const char* key, E value, E standard) {

@@ -297,11 +297,35 @@ void add_compression_penalty(std::vector<MaterialCase>& out) {
   out.push_back(c);
 }
 
+// At one of its ratios a field of Poisson's ratio is the law at that ratio; here the second of three.
+void add_poisson_field(std::vector<MaterialCase>& out) {
+  const auto law = [](double nu) {
+    ElasticConstants c;
+    c.young = 2 * kMu * (1 + 0.3);
+    c.poisson = nu;
+    return isochor::stable_neo_hookean(c);
+  };
+  const auto field =
+      made(isochor::with_poisson_field(law, {0.3, 0.3, 0.3, 0.3, 0.3, 0.3, 0.3, 0.3, 0.1, 0.45}));
+  MaterialCase c;
+  c.covers = {"materials/poisson_field"};
+  c.name = "stable_neo_hookean with a field of Poisson's ratio";
+  c.material = std::move(field->complete()).value();
+  const double lambda = 2 * kMu * 0.3 / 0.4 + kMu;
+  c.energy = [=](const Gradient9& F) {
+    const HyperDual d = determinant(F) - 1.0;
+    return 0.5 * kMu * (trace_C(F) - 3.0) - kMu * d + 0.5 * lambda * d * d;
+  };
+  c.scale = 10;
+  c.inverted = true;
+  out.push_back(c);
+}
+
 void add_element_guard(std::vector<MaterialCase>& out) {
   constexpr double b = 1.3, threshold = 0.5;
   MaterialCase c;
   c.name = "element_guard";
-  c.material = std::make_shared<isochor::ElementGuard>(b, threshold);
+  c.material = std::make_shared<isochor::ElementGuard>(std::vector<double>(isochor::kLanes, b), threshold);
   c.energy = [](const Gradient9& F) {
     const HyperDual J = determinant(F);
     if (J.a >= threshold) return HyperDual();
@@ -335,6 +359,7 @@ std::vector<MaterialCase> material_cases() {
   add_native(out);
   add_fibers(out);
   add_compression_penalty(out);
+  add_poisson_field(out);
   add_element_guard(out);
   return out;
 }

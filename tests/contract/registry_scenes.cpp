@@ -230,6 +230,15 @@ void add_fields(std::vector<SceneCase>& out) {
                 {volume_rows(VolumeSpace::node, VolumeStrainKind::linear)}};
     c.numbered_cells = true;
     out.push_back(c);
+    // Poisson's ratio up to 0.5 itself, a sixth of the cells, and the factor on top.
+    std::vector<double> poisson;
+    for (std::size_t k = 0; k < cells; ++k) poisson.push_back(0.25 + 0.05 * static_cast<double>(k % 6));
+    const auto law = [](double nu) -> isochor::Result<isochor::MaterialPtr> { return material(nu); };
+    auto field = isochor::with_poisson_field(law, poisson).value();
+    c.name = name + ", field of Poisson's ratio";
+    c.covers = {"materials/poisson_field"};
+    c.materials = {{"", isochor::with_stiffness_field(field, factor).value(), 1000}};
+    out.push_back(c);
   }
 }
 

@@ -21,6 +21,9 @@ std::string text_without_path(SceneDef scene) {
     if (auto* file = std::get_if<MeshFile>(&body.mesh)) {
       file->path = file->path.substr(file->path.rfind('/') + 1);
     }
+    if (auto* lattice = std::get_if<LatticeMesh>(&body.mesh)) {
+      lattice->surface = lattice->surface.substr(lattice->surface.rfind('/') + 1);
+    }
   }
   return to_json(scene);
 }

@@ -34,6 +34,7 @@ std::string kind_of(const Json& schema, const std::string& reference) {
   const Json& items = schema["items"];
   if (items.value("type", "") == "integer") return schema.contains("maxItems") ? "integers" : "indices";
   if (items.value("type", "") == "array") return "boxes";
+  if (items.value("type", "") == "number") return "numbers";
   return items.value("$ref", "") == "#/$defs/vector" ? "points" : "list";
 }
 

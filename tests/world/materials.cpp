@@ -1,6 +1,7 @@
 // Materials with constants of their own, fibers and fields: what is refused, and with which words.
 #include "isochor/materials.h"
 
+#include "engine/material_model.h"
 #include "numbers/cube.h"
 #include "support/worlds.h"
 
@@ -135,4 +136,135 @@ TEST_CASE("fibers carry their part of a small stretch along them, and nothing ac
       CHECK(modulus == Approx(young + (along ? 4 * k1 : 0)).epsilon(1e-3));
     }
   }
+}
+
+namespace {
+
+// A bar of two halves with ratios of their own, by regions or by a field on one region, pulled at its end.
+std::vector<Vec3> two_ratios(Element element, double low, double high, bool rows, bool by_field) {
+  const Mesh whole =
+      box({4, 2, 2}, {2, 1, 1}, element == Element::tet10 ? CellType::tet10 : cells_for(element));
+  const Mesh halves = divided(whole, 1);
+  World world = make_world(static_options());
+  BodyDef def;
+  def.element = element;
+  def.guard_stiffness = 0;
+  if (by_field) {
+    std::vector<double> poisson;
+    for (const Index r : halves.cell_region) poisson.push_back(r == 0 ? low : high);
+    def.mesh = whole;
+    const auto law = [](double nu) { return Result<MaterialPtr>(test::neo_hookean(1e5, nu)); };
+    def.materials = {{"", value(with_poisson_field(law, poisson)), 1000}};
+  } else {
+    def.mesh = halves;
+    def.materials = {{"low", test::neo_hookean(1e5, low), 1000},
+                     {"high", test::neo_hookean(1e5, high), 1000}};
+  }
+  const BodyId body = value(world.add_body(def));
+  if (rows) add_volume(world, body, VolumeSpace::element);
+  hold(world, body, {"x0"});
+  TractionDef load;
+  load.body = body;
+  load.surface = "x1";
+  load.traction = {3e4, 0, 5e3};
+  value(world.add(traction(load)));
+  must_advance(world);
+  const auto x = world.positions(body);
+  return {x.begin(), x.end()};
+}
+
+}  // namespace
+
+TEST_CASE("a field of Poisson's ratio says what regions with those ratios say") {
+  for (const Element element : {Element::tet4, Element::tet10, Element::hex8}) {
+    for (const bool rows : {false, true}) {
+      if (rows && element == Element::tet10) continue;  // a linear pressure jumps at an interface of regions
+      INFO(name_of(element) << (rows ? ", rows" : ", one field"));
+      const double high = rows ? 0.5 : 0.45;
+      const auto field = two_ratios(element, 0.2, high, rows, true);
+      const auto regions = two_ratios(element, 0.2, high, rows, false);
+      REQUIRE(field.size() == regions.size());
+      double off = 0;
+      for (std::size_t i = 0; i < field.size(); ++i) {
+        const Vec3 d = field[i] - regions[i];
+        off = std::max(off, std::sqrt(dot(d, d)));
+      }
+      CHECK(off < 1e-8);
+    }
+  }
+}
+
+TEST_CASE("a field of Poisson's ratio keeps E, and the choice of the bulk modulus stays with the rows") {
+  ElasticConstants c;
+  c.young = 1e5;
+  c.bulk_choice = BulkChoice::bulk_modulus;
+  const auto law = [&](double nu) {
+    c.poisson = nu;
+    return stable_neo_hookean(c);
+  };
+  const MaterialPtr field = value(with_poisson_field(law, {0.1, 0.4, 0.25}));
+  for (const auto& [cell, nu] : {std::pair(0, 0.1), {1, 0.4}, {2, 0.25}}) {
+    const MaterialPtr one = value(law(nu));
+    CHECK(field->shear_modulus() * field->stiffness_factor(cell) == Approx(one->shear_modulus()));
+    CHECK(field->inverse_bulk_of(cell) == Approx(one->inverse_bulk()));
+    CHECK(field->poisson_of(cell) == Approx(nu));
+    PointBatch points{};
+    ResponseBatch of_field, of_one;
+    const double F[9] = {1.2, 0.3, -0.1, 0.05, 0.8, 0.2, -0.15, 0.1, 1.1};
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      for (std::size_t i = 0; i < 9; ++i) points.F[i][l] = F[i];
+      points.element[l] = cell;
+    }
+    value(field->complete())->evaluate(Want::hessian, points, of_field);
+    value(one->complete())->evaluate(Want::hessian, points, of_one);
+    CHECK(of_field.psi[0] == Approx(of_one.psi[0]).epsilon(1e-12));
+    for (std::size_t i = 0; i < 9; ++i) CHECK(of_field.P[i][0] == Approx(of_one.P[i][0]).epsilon(1e-11));
+    for (std::size_t i = 0; i < 45; ++i)
+      CHECK(of_field.A[i][0] == Approx(of_one.A[i][0]).epsilon(1e-11).margin(1e-6));
+  }
+}
+
+TEST_CASE("fields of Poisson's ratio are refused with entry, value and reason") {
+  const auto law = [](double nu) {
+    ElasticConstants c;
+    c.young = 1e5;
+    c.poisson = nu;
+    return neo_hookean(c);
+  };
+  CHECK_THAT(refusal(with_poisson_field(law, {})), ContainsSubstring("no entry"));
+  CHECK_THAT(refusal(with_poisson_field(nullptr, {0.3})), ContainsSubstring("no law"));
+  CHECK_THAT(refusal(with_poisson_field(law, {0.3, 0.6})),
+             ContainsSubstring("entry 1") && ContainsSubstring("0.6"));
+  CHECK_THAT(refusal(with_poisson_field(law, {0.3, 0})),
+             ContainsSubstring("entry 1") && ContainsSubstring("kappa"));
+  CHECK_THAT(refusal(with_poisson_field(law, {0.3, std::nan("")})), ContainsSubstring("not a number"));
+  // Without rows 0.5 in one cell is as impossible as everywhere.
+  World world = make_world(static_options());
+  add_body(world, box({1, 1, 1}, {1, 1, 1}, CellType::hex8), Element::hex8,
+           value(with_poisson_field(law, {0.5})));
+  CHECK_THAT(world.compile().error(), ContainsSubstring("0.5"));
+}
+
+TEST_CASE("the element guard is as stiff as the cells that it guards") {
+  // Pressed flat beyond the guard's threshold: twice the stiffness by a field is twice the force.
+  const auto force = [](const MaterialPtr& material) {
+    World world = make_world(static_options());
+    BodyDef def;
+    def.mesh = box({2, 2, 2});
+    def.guard_stiffness = 1;
+    def.materials = {{"", material, 1000}};
+    const BodyId body = value(world.add_body(def));
+    add_volume(world, body);
+    hold(world, body, {"x0", "x1"}, {{1, 0, 0}});
+    hold(world, body, {"y0", "y1"}, {{0, 1, 0}});
+    hold(world, body, {"z0"}, {{0, 0, 1}});
+    const EffectId lid = hold(world, body, {"z1"}, {{0, 0, 1}}, {0, 0, -0.6});
+    must_advance(world);
+    CHECK(world.measures(body).min_J < 0.5);
+    return world.reaction(lid)[0].z;
+  };
+  const std::vector<double> twice(48, 2.0);
+  const double plain = force(test::neo_hookean(1e5, 0.3));
+  CHECK(force(value(with_stiffness_field(test::neo_hookean(1e5, 0.3), twice))) ==
+        Approx(2 * plain).epsilon(1e-9));
 }
