@@ -180,7 +180,8 @@ TEST_CASE("a field of Poisson's ratio says what regions with those ratios say") 
     for (const bool rows : {false, true}) {
       if (rows && element == Element::tet10) continue;  // a linear pressure jumps at an interface of regions
       INFO(name_of(element) << (rows ? ", rows" : ", one field"));
-      const double high = rows ? 0.5 : 0.45;
+      // Hard rows, one a tet, would be more than the nodes can follow.
+      const double high = !rows ? 0.45 : element == Element::hex8 ? 0.5 : 0.49;
       const auto field = two_ratios(element, 0.2, high, rows, true);
       const auto regions = two_ratios(element, 0.2, high, rows, false);
       REQUIRE(field.size() == regions.size());
