@@ -65,22 +65,33 @@ std::shared_ptr<RowPool> total_volume_row(const VolumeRegion& region) {
   return rows;
 }
 
+bool is_hard_zone(const VolumeRegion& region, const VolumeZones& zones, std::size_t zone) {
+  return zones.compliance[zone] == 0 || std::all_of(zones.stencils[zone].begin(), zones.stencils[zone].end(),
+                                                    [&](Index s) { return region.inverse_bulk_of(s) == 0; });
+}
+
 std::shared_ptr<RowPool> zone_volume_rows(const VolumeRegion& region, const VolumeZones& zones) {
   auto rows = std::make_shared<VolumeRowPool>(region.name);
   rows->stencil_pool = region.stencil_pool;
   const SolidPool& pool = *region.pool;
-  const auto inverse_bulk = [&](std::size_t z) { return zones.compliance[z] * region.inverse_bulk; };
+  const auto weight_of = [&](std::size_t z, std::size_t i) {
+    return zones.weight.empty() || zones.weight[z].empty() ? 1.0 : zones.weight[z][i];
+  };
   std::vector<double> sharing(at(pool.stencils()), 0);
   for (std::size_t z = 0; z < zones.stencils.size(); ++z) {
-    if (!std::isfinite(inverse_bulk(z)) || inverse_bulk(z) == 0) continue;
-    for (const Index s : zones.stencils[z]) sharing[at(s)] += 1;
+    if (!std::isfinite(zones.compliance[z]) || is_hard_zone(region, zones, z)) continue;
+    for (std::size_t i = 0; i < zones.stencils[z].size(); ++i) {
+      sharing[at(zones.stencils[z][i])] += weight_of(z, i);
+    }
   }
   for (std::size_t z = 0; z < zones.stencils.size(); ++z) {
-    if (!std::isfinite(inverse_bulk(z))) continue;
-    const bool hard = inverse_bulk(z) == 0;
+    if (!std::isfinite(zones.compliance[z])) continue;
+    const bool hard = is_hard_zone(region, zones, z);
     double volume = 0, metric = 0, compliance = 0;
-    for (const Index s : zones.stencils[z]) {
-      const double weight = hard ? 1 : 1 / sharing[at(s)], share = weight * pool.volume(s);
+    for (std::size_t i = 0; i < zones.stencils[z].size(); ++i) {
+      const Index s = zones.stencils[z][i];
+      const double weight = hard ? weight_of(z, i) : weight_of(z, i) / sharing[at(s)];
+      const double share = weight * pool.volume(s);
       volume += share;
       metric += share / region.shear_modulus_of(s);
       compliance += share * zones.compliance[z] * region.inverse_bulk_of(s);

@@ -16,9 +16,11 @@ struct VolumeRegion {
   double inverse_bulk = 0;   // 1/kappa [1/Pa], of the softest cell; 0: hard rows
   double shear_modulus = 1;  // mu [Pa], for the row metric and the stabilization
   const MaterialModel* material = nullptr;  // where its constants vary from cell to cell
+  std::vector<double> own_inverse_bulk;     // 1/kappa of each stencil, where several regions are one [1/Pa]
 
   // The same for one stencil. Without a bulk compliance in the region (hard rows) no cell has one.
   double inverse_bulk_of(Index stencil) const {
+    if (!own_inverse_bulk.empty()) return own_inverse_bulk[at(stencil)];
     return material && inverse_bulk > 0 ? material->inverse_bulk_of(pool->data().cell[at(stencil)])
                                         : inverse_bulk;
   }
@@ -57,12 +59,16 @@ std::shared_ptr<RowPool> total_volume_row(const VolumeRegion& region);
 struct VolumeZones {
   std::vector<std::vector<Index>> stencils;  // ascending
   std::vector<double> compliance;
+  std::vector<std::vector<double>> weight;  // of each stencil in its zone, 0 to 1; empty: all 1
 };
 
-// Hard zones: phi_z = sum of the integrals of Phi over the zone, which keeps its volume. Compliant ones share
-// the stencils that they have in common: each counts 1/n_e of it, n_e the number of compliant zones over it,
-// and C = sum V_e/(n_e kappa). So a uniform change of volume meets the bulk modulus kappa and a uniform
-// pressure, however zones overlap.
+// Its compliance is zero, whatever the mesh.
+bool is_hard_zone(const VolumeRegion& region, const VolumeZones& zones, std::size_t zone);
+
+// Hard zones: phi_z = sum of weight times the integrals of Phi over the zone. Compliant ones share the
+// stencils that they have in common: each counts its weight over the sum of the weights of all compliant
+// zones there (1/n_e of it among n_e zones of weight 1), and C = sum of share V_e/kappa. So a uniform change
+// of volume meets the bulk modulus kappa and a uniform pressure, however zones overlap.
 std::shared_ptr<RowPool> zone_volume_rows(const VolumeRegion& region, const VolumeZones& zones);
 
 // The zones of all stencils within `rings` rings around each corner node; equal ones once.

@@ -88,6 +88,13 @@ struct RegionData {
   std::array<bool, 2> volume_wanted{};
 };
 
+// Volume functions over cells of several regions, beside those of each region.
+struct SpanningVolume {
+  Index pool = -1;
+  VolumeStrain strain = VolumeStrain::linear;
+  std::vector<Index> stencil_of_cell;  // -1 for cells that it does not hold
+};
+
 struct BodyData {
   std::string name;
   Mesh mesh;
@@ -95,6 +102,7 @@ struct BodyData {
   const ReferenceElement* reference = nullptr;
   Index first_node = 0;
   std::vector<RegionData> regions;
+  std::vector<SpanningVolume> spanning;
   double guard_threshold = 0.5;
   std::optional<double> guard_stiffness;
   std::vector<Index> global_cells;  // mesh.cells with scene node numbers

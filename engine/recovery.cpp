@@ -101,19 +101,30 @@ void add_patch_stress(const RecoveryInput& in, const RegionData& region, std::ve
   }
 }
 
+double multiplier_at(const RecoveryInput& in, Index pool, Index stencil, int q) {
+  const SolidData& data = static_cast<const SolidPool&>(*in.parts.stencil_pools[at(pool)]).data();
+  double sum = 0;
+  for (int k = 0; k < data.functions; ++k) {
+    sum += data.shape[static_cast<std::size_t>(q * data.functions + k)] *
+           in.function_multiplier[at(pool)][at(stencil * data.functions + k)];
+  }
+  return sum;
+}
+
 // Mean pressure of the volume rows over a point, divided by J for the logarithmic strain.
 double row_pressure(const RecoveryInput& in, const RegionData& region, Index local, int q, double J) {
   double p = 0;
   for (std::size_t strain = 0; strain < 2; ++strain) {
     const Index pool = region.volume_pool[strain];
     if (pool < 0) continue;
-    const SolidData& data = static_cast<const SolidPool&>(*in.parts.stencil_pools[at(pool)]).data();
-    double sum = 0;
-    for (int k = 0; k < data.functions; ++k) {
-      sum += data.shape[static_cast<std::size_t>(q * data.functions + k)] *
-             in.function_multiplier[at(pool)][at(local * data.functions + k)];
-    }
+    const double sum = multiplier_at(in, pool, local, q);
     p += strain == 0 ? sum : sum / J;
+  }
+  for (const SpanningVolume& v : in.body.spanning) {
+    const Index stencil = v.stencil_of_cell[at(region.cells[at(local)])];
+    if (stencil < 0) continue;
+    const double sum = multiplier_at(in, v.pool, stencil, q);
+    p += v.strain == VolumeStrain::linear ? sum : sum / J;
   }
   return p;
 }

@@ -176,11 +176,6 @@ Result<void> check_anchored(const SceneFacts& facts) {
 
 namespace {
 
-struct HardPool {
-  std::size_t pool;
-  Index first;  // number of its first row among the hard rows of one stencil pool
-};
-
 bool is_hard(const RowPool& pool) {
   if (pool.law != RowLaw::compliant || pool.rows() == 0 || pool.has_law()) return false;
   if (!pool.lower.empty() || !pool.upper.empty()) return false;  // gives way where it would contradict
@@ -199,68 +194,164 @@ bool is_hard(const RowPool& pool) {
   return true;
 }
 
-// Rows of the map that depend on each other whatever the positions: zero pivots of W W^T + C.
-Result<void> check_repeated_rows(const SceneFacts& facts, const std::vector<HardPool>& pools, Index rows) {
-  std::vector<Eigen::Triplet<double>> w, c;
-  double scale = 0;
-  for (const HardPool& h : pools) {
-    const RowPool& pool = *facts.parts.row_pools[h.pool];
-    for (Index r = 0; r < pool.rows(); ++r) {
-      double norm = 0;
-      for (Index k = pool.map.offset[at(r)]; k < pool.map.offset[at(r) + 1]; ++k) {
-        norm += pool.weight[at(k)] * pool.weight[at(k)];
-      }
-      norm = std::sqrt(norm);
-      scale = std::max(scale, norm);
-      for (Index k = pool.map.offset[at(r)]; k < pool.map.offset[at(r) + 1]; ++k) {
-        w.emplace_back(h.first + r, pool.map.item[at(k)], pool.weight[at(k)]);
-      }
+// One hard row over functions that have the same number wherever they stand for the same cells.
+struct HardRow {
+  Index pool = -1;  // of parts.row_pools; -1: a volume that supports fix
+  Index row = 0;
+  Index part = -1;  // of a fixed volume
+  std::vector<std::pair<std::int64_t, double>> terms;
+};
+
+// Numbers functions: those of solids by body, cell and place in it, so that pools over the same cells meet;
+// others by pool.
+class FunctionNumbers {
+ public:
+  explicit FunctionNumbers(const SceneFacts& facts) : facts_(facts) {
+    for (const BodyData& b : facts.bodies) {
+      first_.push_back(next_);
+      next_ += static_cast<std::int64_t>(b.mesh.cell_count()) * kMost;
     }
-    double largest = 1e-300;
-    for (const ComplianceEntry& e : pool.compliance) largest = std::max(largest, std::abs(e.value));
-    for (const ComplianceEntry& e : pool.compliance) {
-      c.emplace_back(h.first + e.row, h.first + e.col, e.value / largest);
-      if (e.row != e.col) c.emplace_back(h.first + e.col, h.first + e.row, e.value / largest);
+    for (std::size_t p = 0; p < facts.parts.stencil_pools.size(); ++p) {
+      other_.push_back(next_);
+      next_ += static_cast<std::int64_t>(facts.parts.stencil_pools[p]->stencils()) *
+               facts.parts.stencil_pools[p]->functions();
     }
   }
-  Index functions = 0;
-  for (const auto& t : w) functions = std::max(functions, static_cast<Index>(t.col()) + 1);
-  Eigen::SparseMatrix<double> W(rows, functions), C(rows, rows);
+  std::int64_t of_cell(std::size_t body, Index cell, int k) const { return first_[body] + cell * kMost + k; }
+  std::int64_t operator()(Index pool, Index item) const {
+    const auto functions = facts_.parts.stencil_pools[at(pool)]->functions();
+    for (std::size_t b = 0; b < facts_.bodies.size(); ++b) {
+      const BodyData& body = facts_.bodies[b];
+      for (const RegionData& r : body.regions) {
+        if (r.volume_pool[0] == pool || r.volume_pool[1] == pool)
+          return of_cell(b, r.cells[at(item / functions)], item % functions);
+      }
+      for (const SpanningVolume& v : body.spanning) {
+        if (v.pool != pool) continue;
+        const auto& data = static_cast<const SolidPool&>(*facts_.parts.stencil_pools[at(pool)]).data();
+        return of_cell(b, data.cell[at(item / functions)], item % functions);
+      }
+    }
+    return other_[at(pool)] + item;
+  }
+
+ private:
+  static constexpr std::int64_t kMost = 8;  // functions of a cell
+  const SceneFacts& facts_;
+  std::vector<std::int64_t> first_, other_;
+  std::int64_t next_ = 0;
+};
+
+std::string name_rows(const SceneFacts& facts, const std::vector<HardRow>& rows,
+                      const std::vector<std::size_t>& involved) {
+  std::map<Index, std::vector<Index>> by_pool;
+  for (const std::size_t i : involved) {
+    if (rows[i].pool >= 0) by_pool[rows[i].pool].push_back(rows[i].row);
+  }
+  std::string names;
+  for (const auto& [p, list] : by_pool) {
+    const RowPool& pool = *facts.parts.row_pools[at(p)];
+    names += (names.empty() ? "\"" : ", \"") + std::string(pool.name()) + "\"";
+    if (pool.rows() == 1) continue;
+    const auto count = static_cast<Index>(list.size());
+    if (count == pool.rows()) {
+      names += " (all of its " + std::to_string(count) + " rows)";
+    } else {
+      names += " (" + std::to_string(count) + " of its " + std::to_string(pool.rows()) + " rows)";
+    }
+  }
+  return names;
+}
+
+// Rows of the map that depend on each other whatever the positions: zero pivots of W W^T + C.
+Result<void> check_independent_rows(const SceneFacts& facts, const std::vector<HardRow>& rows) {
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  std::vector<Eigen::Triplet<double>> w, c;
+  std::map<std::int64_t, int> column;
+  std::map<Index, std::map<Index, Eigen::Index>> place;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    double norm = 0;
+    for (const auto& [f, weight] : rows[r].terms) norm += weight * weight;
+    for (const auto& [f, weight] : rows[r].terms) {
+      const int col = column.emplace(f, static_cast<int>(column.size())).first->second;
+      w.emplace_back(static_cast<int>(r), col, weight / std::sqrt(norm));
+    }
+    if (rows[r].pool >= 0) place[rows[r].pool][rows[r].row] = static_cast<Eigen::Index>(r);
+  }
+  // Rows are scaled to length one, a stabilization with them: what it maps to zero stays so.
+  std::vector<double> length(rows.size());
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (const auto& [f, weight] : rows[r].terms) length[r] += weight * weight;
+    length[r] = std::sqrt(length[r]);
+  }
+  for (const auto& [p, of_row] : place) {
+    double largest = 1e-300;
+    for (const ComplianceEntry& e : facts.parts.row_pools[at(p)]->compliance)
+      largest = std::max(largest, std::abs(e.value));
+    for (const ComplianceEntry& e : facts.parts.row_pools[at(p)]->compliance) {
+      const Eigen::Index i = of_row.at(e.row), j = of_row.at(e.col);
+      const double v =
+          e.value / largest / (length[static_cast<std::size_t>(i)] * length[static_cast<std::size_t>(j)]);
+      c.emplace_back(static_cast<int>(i), static_cast<int>(j), v);
+      if (i != j) c.emplace_back(static_cast<int>(j), static_cast<int>(i), v);
+    }
+  }
+  Eigen::SparseMatrix<double> W(count, static_cast<Eigen::Index>(column.size())), C(count, count);
   W.setFromTriplets(w.begin(), w.end());
   C.setFromTriplets(c.begin(), c.end());
   const Eigen::SparseMatrix<double> S = Eigen::SparseMatrix<double>(W * W.transpose()) + C;
+  // A check may not cost more than the solve. Rows that couple so much are left to the solver.
+  constexpr Eigen::Index kMostNonzeros = 4'000'000;
+  if (S.nonZeros() > kMostNonzeros) return {};
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt(S);
-  const auto D = ldlt.vectorD();
-  if (ldlt.info() == Eigen::Success && D.minCoeff() > 1e-10 * D.maxCoeff()) return {};
-  std::string names;
-  for (const HardPool& h : pools) {
-    names += (names.empty() ? "\"" : ", \"") + std::string(facts.parts.row_pools[h.pool]->name()) + "\"";
+  const Eigen::VectorXd D = ldlt.vectorD();
+  const double largest = D.maxCoeff();
+  Eigen::Index zero = 0;
+  while (zero < count && D[zero] > 1e-10 * largest) ++zero;
+  if (zero == count) return {};
+  // The combination of rows that vanishes: L^T y = e at the first zero pivot, in the order of the pivots.
+  Eigen::VectorXd y = Eigen::VectorXd::Unit(count, zero);
+  ldlt.matrixL().transpose().solveInPlace(y);
+  y = ldlt.permutationPinv() * y;
+  std::vector<std::size_t> involved;
+  Index part = -1;
+  for (Eigen::Index r = 0; r < count; ++r) {
+    if (std::abs(y[r]) < 1e-6 * y.cwiseAbs().maxCoeff()) continue;
+    involved.push_back(static_cast<std::size_t>(r));
+    if (rows[static_cast<std::size_t>(r)].part >= 0) part = rows[static_cast<std::size_t>(r)].part;
   }
-  return Error{"hard rows repeat or contradict each other: " + names +
-               " constrain the same volumes with zero compliance (their sums coincide); drop one of them, or "
-               "give one a "
-               "compliance (nu < 0.5)"};
+  if (part >= 0) {
+    return Error{
+        "body \"" + facts.bodies[at(part)].name +
+        "\" is enclosed: every boundary node is held in the direction of its surface, so hard volume rows "
+        "leave the mean pressure undetermined; free part of the boundary, or take nu < 0.5"};
+  }
+  return Error{"hard rows repeat or contradict each other: " + name_rows(facts, rows, involved) +
+               " constrain the same volumes with zero compliance (what one says follows from the others); "
+               "drop one of them, or give one a compliance (nu < 0.5)"};
 }
 
-// A body whose whole boundary is held: its volume cannot change, so hard rows leave its mean pressure open.
-Result<void> check_enclosed(const SceneFacts& facts, const std::set<Index>& hard_pools) {
+// Parts whose whole boundary is held, as a row each: their volume cannot change.
+std::vector<HardRow> fixed_volumes(const SceneFacts& facts, const FunctionNumbers& number) {
   Index count = 0;
   const std::vector<Index> part = connected_parts(facts, count);
-  std::vector<bool> all_hard(at(count), true), any(at(count), false);
   std::vector<Vec3> area(facts.parts.rest.size());
   std::vector<double> scale(at(count), 0);
-  for (const BodyData& body : facts.bodies) {
+  std::vector<HardRow> rows(at(count));
+  for (std::size_t b = 0; b < facts.bodies.size(); ++b) {
+    const BodyData& body = facts.bodies[b];
+    const int functions = body.reference->points > 1 ? body.reference->corners : 1;
     for (const RegionData& region : body.regions) {
-      const bool hard = (region.volume_pool[0] >= 0 && hard_pools.count(region.volume_pool[0]) > 0) ||
-                        (region.volume_pool[1] >= 0 && hard_pools.count(region.volume_pool[1]) > 0);
       const auto data = solid_data(*body.reference, facts.parts.rest, body.global_cells, region.cells,
                                    VolumeFunctions::none);
       if (!data) continue;
       const SolidData& d = data.value();
       for (Index s = 0; s < d.nodes.count(); ++s) {
         const auto nodes = d.nodes[s];
-        any[at(part[at(nodes[0])])] = true;
-        if (!hard) all_hard[at(part[at(nodes[0])])] = false;
+        HardRow& row = rows[at(part[at(nodes[0])])];
+        row.part = static_cast<Index>(b);
+        for (int k = 0; k < functions; ++k)
+          row.terms.emplace_back(number.of_cell(b, region.cells[at(s)], k), 1.0);
         for (int q = 0; q < d.points; ++q) {
           for (std::size_t a = 0; a < nodes.size(); ++a) {
             const Vec3 g =
@@ -283,32 +374,66 @@ Result<void> check_enclosed(const SceneFacts& facts, const std::set<Index>& hard
     }
     if (std::sqrt(dot(free, free)) > 1e-7 * scale[at(part[i])]) open[at(part[i])] = true;
   }
+  std::vector<HardRow> fixed;
   for (Index c = 0; c < count; ++c) {
-    if (!any[at(c)] || !all_hard[at(c)] || open[at(c)]) continue;
-    Index node = 0;
-    while (part[at(node)] != c) ++node;
-    return Error{
-        "body \"" + body_of(facts, node).name +
-        "\" is enclosed: every boundary node is held in the direction of its surface, so hard volume rows "
-        "leave the mean pressure undetermined; free part of the boundary, or take nu < 0.5"};
+    if (!open[at(c)] && !rows[at(c)].terms.empty()) fixed.push_back(std::move(rows[at(c)]));
   }
-  return {};
+  return fixed;
+}
+
+// Groups of rows that have functions in common, each group by itself.
+std::vector<std::vector<HardRow>> connected_groups(std::vector<HardRow> rows) {
+  std::vector<std::size_t> root(rows.size());
+  std::iota(root.begin(), root.end(), std::size_t{0});
+  const auto find = [&](std::size_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+  };
+  std::map<std::int64_t, std::size_t> holder;
+  std::map<Index, std::size_t> of_pool;  // a pool's compliance may couple its rows
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (rows[r].pool >= 0) root[find(r)] = find(of_pool.emplace(rows[r].pool, r).first->second);
+    for (const auto& [f, weight] : rows[r].terms) root[find(r)] = find(holder.emplace(f, r).first->second);
+  }
+  std::map<std::size_t, std::vector<HardRow>> groups;
+  for (std::size_t r = 0; r < rows.size(); ++r) groups[find(r)].push_back(std::move(rows[r]));
+  std::vector<std::vector<HardRow>> out;
+  for (auto& [r, group] : groups) out.push_back(std::move(group));
+  return out;
+}
+
+// Rows that cannot depend on each other: those of one pool that share no function, and rows at nodes whose
+// stabilization is there for that.
+bool plainly_independent(const SceneFacts& facts, const std::vector<HardRow>& group) {
+  for (const HardRow& row : group) {
+    if (row.pool != group.front().pool || row.pool < 0) return false;
+  }
+  if (!facts.parts.row_pools[at(group.front().pool)]->compliance.empty()) return true;
+  std::set<std::int64_t> seen;
+  for (const HardRow& row : group) {
+    for (const auto& [f, weight] : row.terms) {
+      if (!seen.insert(f).second) return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
 
 Result<void> check_hard_rows(const SceneFacts& facts) {
-  std::map<Index, std::vector<HardPool>> by_stencils;
-  std::map<Index, Index> rows;
-  std::set<Index> hard_pools;
+  const FunctionNumbers number(facts);
+  std::vector<HardRow> rows;
   Index hard_total = 0;
   std::string names;
   for (std::size_t p = 0; p < facts.parts.row_pools.size(); ++p) {
     const RowPool& pool = *facts.parts.row_pools[p];
     if (!is_hard(pool)) continue;
-    by_stencils[pool.stencil_pool].push_back({p, rows[pool.stencil_pool]});
-    rows[pool.stencil_pool] += pool.rows();
-    hard_pools.insert(pool.stencil_pool);
+    for (Index r = 0; r < pool.rows(); ++r) {
+      HardRow row{static_cast<Index>(p), r, -1, {}};
+      for (Index k = pool.map.offset[at(r)]; k < pool.map.offset[at(r) + 1]; ++k)
+        row.terms.emplace_back(number(pool.stencil_pool, pool.map.item[at(k)]), pool.weight[at(k)]);
+      rows.push_back(std::move(row));
+    }
     bool stabilized = false;
     for (const ComplianceEntry& e : pool.compliance) stabilized = stabilized || e.value != 0;
     if (!stabilized) {
@@ -325,11 +450,13 @@ Result<void> check_hard_rows(const SceneFacts& facts) {
                  "per body, or "
                  "nu < 0.5"};
   }
-  for (const auto& [pool, list] : by_stencils) {
-    if (list.size() < 2) continue;
-    if (auto r = check_repeated_rows(facts, list, rows[pool]); !r) return r;
+  if (rows.empty()) return {};
+  for (HardRow& fixed : fixed_volumes(facts, number)) rows.push_back(std::move(fixed));
+  for (const auto& group : connected_groups(std::move(rows))) {
+    if (group.size() < 2 || plainly_independent(facts, group)) continue;
+    if (auto r = check_independent_rows(facts, group); !r) return r;
   }
-  return check_enclosed(facts, hard_pools);
+  return {};
 }
 
 }  // namespace isochor

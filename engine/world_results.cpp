@@ -68,7 +68,11 @@ BodyMeasures World::measures(BodyId body) const {
         std::any_of(b.regions.begin(), b.regions.end(), [&](const RegionData& r) {
           return r.volume_pool[0] == pools[p]->stencil_pool || r.volume_pool[1] == pools[p]->stencil_pool;
         });
-    if (!of_body) continue;
+    const bool spanning = pools[p]->law == RowLaw::compliant &&
+                          std::any_of(b.spanning.begin(), b.spanning.end(), [&](const SpanningVolume& v) {
+                            return v.pool == pools[p]->stencil_pool;
+                          });
+    if (!of_body && !spanning) continue;
     const auto first = at(w.system->first_row(static_cast<Index>(p)));
     double sum = 0, volume = 0;
     for (std::size_t r = 0; r < at(pools[p]->rows()); ++r) {

@@ -71,6 +71,7 @@ Result<void> check_all_names(const SceneDef& s) {
   if (auto r = check_names("dirichlet", s.dirichlet, plain, seen); !r) return r;
   if (auto r = check_names("cavities", s.cavities, plain, seen); !r) return r;
   if (auto r = check_names("tractions", s.tractions, plain, seen); !r) return r;
+  if (auto r = check_names("damping", s.damping, plain, seen); !r) return r;
   if (auto r = check_names("epidermis", s.epidermis, plain, seen); !r) return r;
   if (auto r = check_names("membranes", s.membranes, plain, seen); !r) return r;
   if (auto r = check_names("ties", s.ties, plain, seen); !r) return r;

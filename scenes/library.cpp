@@ -8,7 +8,7 @@ namespace isochor {
 
 namespace {
 
-constexpr std::array<LibraryScene, 18> kScenes{{
+constexpr std::array<LibraryScene, 21> kScenes{{
     {"finger", "Bending finger with bellows and a limiting layer, 10 kPa", finger},
     {"tube", "Inflated tube, ends held, 10 kPa", tube},
     {"cushion", "Cushion, 10 kPa", cushion},
@@ -27,6 +27,9 @@ constexpr std::array<LibraryScene, 18> kScenes{{
     {"gas_tube", "Closed tube into which air flows, isothermal", gas_tube},
     {"finger_lattice", "Finger in a lattice of cubes, hanging", finger_lattice},
     {"two_chambers", "Two domes whose air equalizes when a valve opens", two_chambers},
+    {"puck", "Puck of one hard zone, pressed in by half of its height", puck},
+    {"puck_skin", "The same with an epidermis", puck_skin},
+    {"painted_arm", "Arm whose painted muscles keep their volumes, with skin, pressed in", painted_arm},
 }};
 
 }  // namespace

@@ -45,5 +45,8 @@ SceneDef torsion(const SceneVariant& variant = {});
 SceneDef cable_finger(const SceneVariant& variant = {});
 SceneDef gas_tube(const SceneVariant& variant = {});
 SceneDef two_chambers(const SceneVariant& variant = {});
+SceneDef puck(const SceneVariant& variant = {});
+SceneDef puck_skin(const SceneVariant& variant = {});
+SceneDef painted_arm(const SceneVariant& variant = {});
 
 }  // namespace isochor

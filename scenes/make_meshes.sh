@@ -42,6 +42,8 @@ thick_sphere                thick_sphere      1  h=0.1352
 thick_sphere_tet10          thick_sphere      2  h=0.2500
 torsion_cylinder            torsion_cylinder  1  h=0.1500
 torsion_cylinder_tet10      torsion_cylinder  2  h=0.2772
+puck                        puck              1  h=0.0072
+arm                         arm               1  h=0.0125
 '
 fine='
 tube_fine                   tube              1  h=0.0034
@@ -79,6 +81,36 @@ version=$(gmsh --version 2>&1 | tail -n 1)
 [[ $version == 4.8.* ]] ||
   echo "note: committed meshes were made with Gmsh 4.8.4, this is $version" >&2
 
+# Paints two fields on the nodes of the arm, "upper" and "lower": 1 on one half of the skin between the ends, fading
+# over 15 mm from one into the other and toward the ends, which stay without paint.
+paint_arm() {
+  awk '
+    BEGIN { total = 0 }
+    function ramp(v) { return v < 0 ? 0 : (v > 1 ? 1 : v) }
+    $1 == "$Nodes" { inside = 1; getline; blocks = $1; next }
+    $1 == "$EndNodes" { inside = 0 }
+    inside {
+      count = $4
+      for (i = 0; i < count; i++) { getline; tag[i] = $1 }
+      for (i = 0; i < count; i++) {
+        getline
+        middle = ramp(($1 - 0.03) / 0.015) * ramp((0.17 - $1) / 0.015)
+        labels[total] = tag[i]
+        upper[total] = middle * ramp(0.5 + ($2 + 0.0025) / 0.015)
+        lower[total++] = middle * ramp(0.5 - ($2 - 0.0025) / 0.015)
+      }
+    }
+    function field(name, values,   i) {
+      printf "$NodeData\n1\n\"%s\"\n1\n0\n3\n0\n1\n%d\n", name, total
+      for (i = 0; i < total; i++) printf "%d %.6g\n", labels[i], values[i]
+      print "$EndNodeData"
+    }
+    END { field("upper", upper); field("lower", lower) }
+  ' "$1" > "$1.paint"
+  cat "$1.paint" >> "$1"
+  rm "$1.paint"
+}
+
 # make FOLDER NAME GEOMETRY ORDER OPTION...
 make() {
   local folder=$1 name=$2 geo=$3 order=$4 option log
@@ -94,6 +126,7 @@ make() {
     fail "$name failed, see $log"
   fi
   rm "$log"
+  [[ $geo != arm ]] || paint_arm "$folder/$name.msh"
   awk -v name="$name" '
     $1 == "$Nodes" { getline; nodes = $2 }
     $1 == "$Elements" { inside = 1; getline; next }

@@ -2,6 +2,7 @@
 // there.
 #pragma once
 
+#include "isochor/painted.h"
 #include "isochor/poses.h"
 #include "isochor/world.h"
 
@@ -23,12 +24,15 @@ struct Selection {
 enum class VolumeSpace : std::uint8_t { node, element, body, ring, zone };
 enum class VolumeStrainKind : std::uint8_t { linear, logarithmic };  // J - 1, log J
 
-// A set of cells with one row; zones may overlap. What fits any of the criteria is in it, all in one region.
+// A set of cells with one row; zones may overlap. What fits any of the criteria is in it.
 struct VolumeZone {
   std::string name;
   std::vector<std::string> regions;
   std::vector<Index> cells;                // of the body's mesh
   std::vector<std::array<Vec3, 2>> boxes;  // lower and upper corner [m]: cells with their center inside
+  // A field of the mesh with weights from 0 to 1 painted on its surface; cells get the weights of the points
+  // of the surface that they are projected to (isochor/painted.h). Painted zones share cells by weight.
+  std::string field;
   // Times 1/kappa: 0 is a hard zone, infinity leaves the row out.
   double compliance = 1;
 };
@@ -38,12 +42,19 @@ struct VolumeDef {
   BodyId body{};
   VolumeSpace space = VolumeSpace::node;
   VolumeStrainKind strain = VolumeStrainKind::linear;
-  // Regions it covers; empty: all. Rows are split at interfaces between regions, where the pressure jumps;
-  // `body` gives one row a region.
+  // Regions it covers; empty: all. Rows are split at interfaces between regions, where the pressure jumps.
   std::vector<std::string> regions;
   // Space ring: one row over the cells within so many rings around each node, 1 those that touch it.
   int rings = 1;
   std::vector<VolumeZone> zones;  // space zone
+  // Of painted zones: what becomes of cells that nothing was painted on, and the surfaces that were painted
+  // (empty: all of the boundary).
+  UnpaintedCells unpainted = UnpaintedCells::none;
+  std::vector<std::string> painted_surfaces;
+  // Spaces body and zone: rows over cells of several regions. Each cell adds its own volume/kappa to the
+  // compliance of its row, and the pressure is the same in all of them. False: `body` gives one row a region,
+  // and zones over several are refused.
+  bool across_regions = false;
   // Dohrmann-Bochev stabilization of nodal rows on linear tets; ignored where inf-sup holds. 0: off.
   double stabilization = 1;
   // No bulk compliance whatever the material says (nodal rows keep their stabilization, which leaves totals

@@ -115,6 +115,7 @@ void describe(Io& io, VolumeZone& z) {
   io.names("regions", z.regions);
   io.indices("cells", z.cells);
   io.boxes("boxes", z.boxes);
+  io.text("field", z.field);
   io.number_or_inf("compliance", z.compliance, 1.0);
 }
 
@@ -130,6 +131,9 @@ void describe(Io& io, VolumeRows& v) {
   io.names("regions", v.def.regions);
   io.integer("rings", v.def.rings, 1);
   io.list("zones", v.def.zones);
+  io.word("unpainted", v.def.unpainted, UnpaintedCells::none);
+  io.names("painted_surfaces", v.def.painted_surfaces);
+  io.flag("across_regions", v.def.across_regions, false);
   io.number("stabilization", v.def.stabilization, 1.0);
   io.flag("hard", v.def.hard, false);
   io.flag("carries_bulk", v.def.carries_bulk, true);

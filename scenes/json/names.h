@@ -35,6 +35,7 @@ ISOCHOR_WORDS(BulkChoice, 2, {BulkChoice::consistent, "consistent"},
               {BulkChoice::bulk_modulus, "bulk_modulus"});
 ISOCHOR_WORDS(VolumeStrainKind, 2, {VolumeStrainKind::linear, "linear"},
               {VolumeStrainKind::logarithmic, "logarithmic"});
+ISOCHOR_WORDS(UnpaintedCells, 2, {UnpaintedCells::none, "none"}, {UnpaintedCells::nearest, "nearest"});
 ISOCHOR_WORDS(RowTreatment, 6, {RowTreatment::automatic, "automatic"}, {RowTreatment::saddle, "saddle"},
               {RowTreatment::condensed, "condensed"}, {RowTreatment::bordered, "bordered"},
               {RowTreatment::dual, "dual"}, {RowTreatment::augmented, "augmented"});

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 
 #include "contract/registry.h"
@@ -47,6 +48,38 @@ const std::vector<std::pair<Element, std::string>> kElements = {
     {Element::tet10, "tet10 curved"},
     {Element::hex8, "hex8"}};
 
+// Two painted zones over two regions of different stiffness, and one over all that is hard.
+SceneCase painted_case(SceneCase c, const std::string& element) {
+  c.name = element + ", painted zones across regions";
+  c.covers = {"constraints/painted_zones", "constraints/surface_feet", "constraints/volume_zones"};
+  c.mesh = divided(c.mesh, 0.5);
+  c.materials = {{"low", material(0.3), 1000}, {"high", material(0.4), 1000}};
+  isochor::VolumeDef def;
+  def.space = VolumeSpace::zone;
+  def.across_regions = true;
+  for (const char* field : {"left", "right"}) {
+    isochor::MeshField paint;
+    paint.name = field;
+    for (const Vec3& x : c.mesh.nodes) {
+      const double w = std::clamp(1.5 * x.x - 0.25, 0.0, 1.0);
+      paint.values.push_back(std::string(field) == "left" ? 1 - w : w);
+    }
+    c.mesh.fields.push_back(paint);
+    isochor::VolumeZone zone;
+    zone.name = zone.field = field;
+    def.zones.push_back(zone);
+  }
+  isochor::VolumeDef whole;
+  whole.name = "whole";
+  whole.space = VolumeSpace::body;
+  whole.across_regions = true;
+  whole.hard = true;
+  whole.carries_bulk = false;
+  c.effects = {isochor::volume(def), isochor::volume(whole)};
+  c.numbered_cells = true;  // the fields are by node
+  return c;
+}
+
 void add_volumes(std::vector<SceneCase>& out) {
   const std::vector<std::string> covers = {"constraints/volume", "constraints/volume_rows"};
   for (const auto& [element, name] : kElements) {
@@ -63,20 +96,25 @@ void add_volumes(std::vector<SceneCase>& out) {
         out.push_back(c);
       }
     }
-    for (const bool hard : {false, true}) {
-      isochor::VolumeZone low{"low", {}, {0, 1, 2}, {}, hard ? 0.0 : 1.0};
-      isochor::VolumeZone all{"all", {}, {}, {{Vec3{-9, -9, -9}, Vec3{9, 9, 9}}}, 2};
-      isochor::VolumeDef def;
-      def.space = hard ? VolumeSpace::zone : VolumeSpace::ring;
-      def.rings = 2;
-      if (hard) def.zones = {low, all};
-      SceneCase c = one_field;
-      c.name = name + (hard ? ", hard zone in a compliant one" : ", rings");
-      c.covers = covers;
-      c.effects = {isochor::volume(def)};
-      c.numbered_cells = hard;
-      out.push_back(c);
+    for (const auto strain : {VolumeStrainKind::linear, VolumeStrainKind::logarithmic}) {
+      for (const bool hard : {false, true}) {
+        isochor::VolumeZone low{"low", {}, {0, 1, 2}, {}, {}, hard ? 0.0 : 1.0};
+        isochor::VolumeZone all{"all", {}, {}, {{Vec3{-9, -9, -9}, Vec3{9, 9, 9}}}, {}, 2};
+        isochor::VolumeDef def;
+        def.space = hard ? VolumeSpace::zone : VolumeSpace::ring;
+        def.strain = strain;
+        def.rings = 2;
+        if (hard) def.zones = {low, all};
+        SceneCase c = one_field;
+        c.name = name + (hard ? ", hard zone in a compliant one" : ", rings") + ", strain " +
+                 std::to_string(static_cast<int>(strain));
+        c.covers = covers;
+        c.effects = {isochor::volume(def)};
+        c.numbered_cells = hard;
+        out.push_back(c);
+      }
     }
+    out.push_back(painted_case(one_field, name));
     SceneCase regions = one_field;
     regions.name = name + ", two regions at nu = 0.5";
     regions.mesh = divided(solid_mesh(element), 0.5);
