@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 
@@ -119,6 +120,64 @@ Probe inf_sup_probe(const Formulation& f, int n) {
     out["zero modes"] = zero;
     out["rows"] = static_cast<double>(h.rows.rows());
     out["displacements"] = static_cast<double>(h.rows.cols());
+    return out;
+  };
+}
+
+namespace {
+
+// S of hard nodal rows, scaled from both sides with the diagonal of M_p / mu, mu = 1.
+Result<Matrix> scaled_schur(double stabilization, int n) {
+  const Formulation& f = formulation("tet4_node");
+  auto mass = blocks(f, n, 1, 0);
+  if (!mass) return Error{mass.error()};
+  auto hard = blocks(f, n, std::numeric_limits<double>::infinity(), stabilization);
+  if (!hard) return Error{hard.error()};
+  const Blocks& h = hard.value();
+  const Eigen::LLT<Matrix> cholesky(h.stiffness);
+  if (cholesky.info() != Eigen::Success) return Error{"the stiffness at rest is not positive definite"};
+  const Matrix half = cholesky.matrixL().solve(h.rows.transpose());
+  const Eigen::VectorXd scale = mass.value().compliance.diagonal().cwiseSqrt().cwiseInverse();
+  return Matrix(scale.asDiagonal() * (half.transpose() * half + h.compliance) * scale.asDiagonal());
+}
+
+int conjugate_gradients(const Matrix& S, int most) {
+  Eigen::VectorXd b(S.rows());
+  std::uint32_t random = 1;
+  for (auto& v : b) {
+    random = 1664525u * random + 1013904223u;
+    v = static_cast<double>(random) / 4294967296.0 - 0.5;
+  }
+  Eigen::VectorXd r = b, p = b;
+  double rr = r.squaredNorm();
+  for (int k = 1; k <= most; ++k) {
+    const Eigen::VectorXd q = S * p;
+    const double step = rr / p.dot(q);
+    r -= step * q;
+    const double next = r.squaredNorm();
+    if (next <= 1e-18 * b.squaredNorm()) return k;
+    p = r + next / rr * p;
+    rr = next;
+  }
+  return most;
+}
+
+}  // namespace
+
+Probe dual_probe(double stabilization, int n) {
+  return [stabilization, n](const SceneDef&, int) -> Result<Numbers> {
+    auto schur = scaled_schur(stabilization, n);
+    if (!schur) return Error{schur.error()};
+    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(schur.value(), Eigen::EigenvaluesOnly);
+    if (eigen.info() != Eigen::Success) return Error{"the eigenvalues did not converge"};
+    const double least = eigen.eigenvalues().minCoeff(), largest = eigen.eigenvalues().maxCoeff();
+    // Zero to rounding: a spurious pressure mode.
+    const bool singular = least < 1e-12 * largest;
+    Numbers out{{"least", singular ? 0 : least},
+                {"largest", largest},
+                {"rows", static_cast<double>(schur.value().rows())},
+                {"iterations", conjugate_gradients(schur.value(), 1000)}};
+    if (!singular) out["condition"] = largest / least;
     return out;
   };
 }

@@ -95,5 +95,8 @@ Study timesteps_study();
 Study effects_study();
 Study scaling_study();
 Study stability_study();
+Study zones_study();
+Study pressure_study();
+Study stabilization_study();
 
 }  // namespace isochor::studies

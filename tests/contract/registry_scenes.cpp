@@ -202,7 +202,7 @@ void add_supports_and_loads(std::vector<SceneCase>& out) {
   out.push_back(loads);
 }
 
-// Without an increment, as here, damping is nothing; its own derivatives are held by numbers.damping.
+// The probe gives it an increment from rest.
 void add_damping(std::vector<SceneCase>& out) {
   isochor::DampingDef def;
   def.viscosity = 0.4;

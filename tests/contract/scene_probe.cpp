@@ -77,6 +77,14 @@ PoolProbe::PoolProbe(const StencilPool& pool, const SceneProbe& scene)
       scene_(scene),
       multiplier_(scene.multipliers(at(pool.stencils()) * static_cast<std::size_t>(pool.functions()))) {}
 
+StencilRequest PoolProbe::request(Want want, Definiteness definiteness, Index begin, Index end,
+                                  std::span<const Vec3> x, std::span<const double> multiplier) const {
+  StencilRequest r{want, definiteness, begin, end, x, scene_.rest(), multiplier};
+  r.increment.h = kProbeStep;
+  r.increment.before = scene_.rest();
+  return r;
+}
+
 Slots PoolProbe::evaluate(Want want, const std::vector<Vec3>& x) const {
   return evaluate(want, x, multiplier_);
 }
@@ -84,7 +92,7 @@ Slots PoolProbe::evaluate(Want want, const std::vector<Vec3>& x) const {
 Slots PoolProbe::evaluate(Want want, const std::vector<Vec3>& x, const std::vector<double>& multiplier,
                           Definiteness definiteness) const {
   Slots slots(pool_);
-  pool_.evaluate({want, definiteness, 0, pool_.stencils(), x, scene_.rest(), multiplier}, slots.spans());
+  pool_.evaluate(request(want, definiteness, 0, pool_.stencils(), x, multiplier), slots.spans());
   return slots;
 }
 
@@ -92,22 +100,20 @@ Slots PoolProbe::evaluate_split(const std::vector<Vec3>& x, Index grain) const {
   Slots slots(pool_);
   for (Index end = pool_.stencils(); end > 0; end -= grain) {
     const Index begin = std::max(Index{0}, end - grain);
-    pool_.evaluate({Want::hessian, Definiteness::exact, begin, end, x, scene_.rest(), multiplier_},
-                   slots.spans());
+    pool_.evaluate(request(Want::hessian, Definiteness::exact, begin, end, x, multiplier_), slots.spans());
   }
   return slots;
 }
 
 Slots PoolProbe::evaluate_range(const std::vector<Vec3>& x, Index begin, Index end) const {
   Slots slots(pool_);
-  pool_.evaluate({Want::hessian, Definiteness::exact, begin, end, x, scene_.rest(), multiplier_},
-                 slots.spans());
+  pool_.evaluate(request(Want::hessian, Definiteness::exact, begin, end, x, multiplier_), slots.spans());
   return slots;
 }
 
 void PoolProbe::evaluate_into(Slots& slots, Want want, Definiteness definiteness,
                               const std::vector<Vec3>& x) const {
-  pool_.evaluate({want, definiteness, 0, pool_.stencils(), x, scene_.rest(), multiplier_}, slots.spans());
+  pool_.evaluate(request(want, definiteness, 0, pool_.stencils(), x, multiplier_), slots.spans());
 }
 
 Eigen::MatrixXd PoolProbe::dense_hessian(const Slots& slots, Index stencil) const {

@@ -47,6 +47,9 @@ struct Slots {
 };
 bool all_finite(const Slots& slots);
 
+// Length of the increment that pools with a past are evaluated for; it began at rest.
+inline constexpr double kProbeStep = 0.1;
+
 class PoolProbe {
  public:
   PoolProbe(const isochor::StencilPool& pool, const SceneProbe& scene);
@@ -67,6 +70,9 @@ class PoolProbe {
   Eigen::MatrixXd dense_hessian(const Slots& slots, isochor::Index stencil) const;
 
  private:
+  isochor::StencilRequest request(isochor::Want want, isochor::Definiteness definiteness,
+                                  isochor::Index begin, isochor::Index end, std::span<const isochor::Vec3> x,
+                                  std::span<const double> multiplier) const;
   const isochor::StencilPool& pool_;
   const SceneProbe& scene_;
   std::vector<double> multiplier_;
