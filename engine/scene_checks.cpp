@@ -402,20 +402,25 @@ std::vector<std::vector<HardRow>> connected_groups(std::vector<HardRow> rows) {
   return out;
 }
 
-// Rows that cannot depend on each other: those of one pool that share no function, and rows at nodes whose
-// stabilization is there for that.
+// Rows that cannot depend on each other, those of one pool that share no function; and pressure spaces, whose
+// weights add up to one everywhere: rows at nodes, with a stabilization against what depends, or without one
+// because the author took it away.
 bool plainly_independent(const SceneFacts& facts, const std::vector<HardRow>& group) {
   for (const HardRow& row : group) {
     if (row.pool != group.front().pool || row.pool < 0) return false;
   }
   if (!facts.parts.row_pools[at(group.front().pool)]->compliance.empty()) return true;
-  std::set<std::int64_t> seen;
+  std::map<std::int64_t, double> sum;
+  bool shared = false;
   for (const HardRow& row : group) {
     for (const auto& [f, weight] : row.terms) {
-      if (!seen.insert(f).second) return false;
+      const auto [it, fresh] = sum.emplace(f, 0.0);
+      shared = shared || !fresh;
+      it->second += weight;
     }
   }
-  return true;
+  return !shared || std::all_of(sum.begin(), sum.end(),
+                                [](const auto& entry) { return std::abs(entry.second - 1) < 1e-9; });
 }
 
 }  // namespace

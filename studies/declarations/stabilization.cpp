@@ -68,7 +68,6 @@ std::vector<Cell> cells(bool quick) {
       tip.reference = p.reference;
       tip.uncertainty = p.uncertainty;
       tip.source = std::string(p.source);
-      tip.guarded = quick && tau == 1;
       out.push_back(std::move(tip));
       Cell field = cell_of("pressure", f, tau);
       field.scene = cube(f, n);
@@ -82,7 +81,6 @@ std::vector<Cell> cells(bool quick) {
       dual.id += "/" + std::to_string(boxes);
       dual.knobs["n"] = boxes;
       dual.probe = dual_probe(tau, boxes);
-      dual.guarded = quick && boxes == 2 && tau > 0;
       out.push_back(std::move(dual));
     }
   }
