@@ -161,9 +161,9 @@ Section column_section(std::span<const Measured> all) {
   return s;
 }
 
-Section cube_section(std::span<const Measured> all) {
+Section cube_section(std::span<const Measured> all, bool glued) {
   Section s{
-      "A cube that stands free",
+      glued ? "A cube that is glued to the ground" : "A cube that stands on smooth ground",
       "1 m, mu = 10 kPa, nu = 0.5 where not said otherwise, under its own weight. At the edges of a glued "
       "base the stress is singular. "
       "Distance of the mean stress of cells from that of Tet10 with linear pressure on the same cells (L2), "
