@@ -29,6 +29,11 @@ Vec3 tangential(const Vec3& v, const Vec3& normal) {
 
 }  // namespace
 
+void ContactPool::add(Index node, double stick) {
+  nodes_.push({&node, 1});
+  stick_.push_back(stick);
+}
+
 // Limit, tangent plane and stretch of the spring that stands for sticking friction. Without an increment
 // there is no slip, and what is left is the pull that the last step ended with.
 ContactPool::Friction ContactPool::friction(const StencilRequest& q, const Poses& poses, Index s) const {

@@ -19,10 +19,7 @@ class ContactPool final : public StencilPool {
   ContactPool(std::string name, Obstacle obstacle, double friction)
       : name_(std::move(name)), obstacle_(std::move(obstacle)), friction_(friction) {}
   // `stick`: stiffness of friction that sticks [N/m].
-  void add(Index node, double stick) {
-    nodes_.push({&node, 1});
-    stick_.push_back(stick);
-  }
+  void add(Index node, double stick);
   void finish() { finish_topology(); }
 
   std::string_view name() const override { return name_; }

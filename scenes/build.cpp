@@ -120,6 +120,17 @@ Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, Bui
   for (const auto& def : scene.windings) add(winding(def));
   for (const auto& def : scene.layers) add(strain_limit(def));
   for (const auto& def : scene.ties) add(tie(def));
+  // After all supports: what they hold wholly has no contact.
+  for (std::size_t c = 0; c < scene.contacts.size(); ++c) {
+    ContactDef def = scene.contacts[c];
+    PoseTrack& motion = def.obstacle.motion;
+    if (motion.keys.empty() && !motion.file.empty()) {
+      auto track = read_poses(in_folder(scene, motion.file));
+      if (!track) return Error{place("contacts", c) + ".obstacle.motion: " + track.error()};
+      motion = std::move(track).value();
+    }
+    add(contact(def));
+  }
   if (!error.empty()) return Error{error};
   return {};
 }

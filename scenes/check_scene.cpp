@@ -79,6 +79,7 @@ Result<void> check_all_names(const SceneDef& s) {
   if (auto r = check_names("windings", s.windings, plain, seen); !r) return r;
   if (auto r = check_names("layers", s.layers, plain, seen); !r) return r;
   if (auto r = check_names("valves", s.valves, plain, seen); !r) return r;
+  if (auto r = check_names("contacts", s.contacts, plain, seen); !r) return r;
   return check_names("forces", s.forces, plain, seen);
 }
 
@@ -184,6 +185,11 @@ Result<void> check_metric(const SceneDef& s, const MetricDef& m, const std::stri
     case Quantity::cable_tension:
     case Quantity::cable_length:
       return require(where, "cable", s.cables, m.of);
+    case Quantity::contact_force:
+    case Quantity::contact_area:
+    case Quantity::contact_pressure:
+    case Quantity::contact_gap:
+      return require(where, "contact", s.contacts, m.of);
     case Quantity::reaction_force:
     case Quantity::reaction_moment:
       return require(where, "dirichlet support", s.dirichlet, m.of);

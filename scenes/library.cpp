@@ -8,7 +8,7 @@ namespace isochor {
 
 namespace {
 
-constexpr std::array<LibraryScene, 21> kScenes{{
+constexpr auto kScenes = std::to_array<LibraryScene>({
     {"finger", "Bending finger with bellows and a limiting layer, 10 kPa", finger},
     {"tube", "Inflated tube, ends held, 10 kPa", tube},
     {"cushion", "Cushion, 10 kPa", cushion},
@@ -30,7 +30,11 @@ constexpr std::array<LibraryScene, 21> kScenes{{
     {"puck", "Puck of one hard zone, pressed in by half of its height", puck},
     {"puck_skin", "The same with an epidermis", puck_skin},
     {"painted_arm", "Arm whose painted muscles keep their volumes, with skin, pressed in", painted_arm},
-}};
+    {"ball_drop", "Incompressible ball dropped on the floor", ball_drop},
+    {"incline", "Block that slides down a slope with friction", incline},
+    {"squeezed_block", "Block pressed between cylinders and released", squeezed_block},
+    {"indented_puck", "Incompressible puck indented by a sphere", indented_puck},
+});
 
 }  // namespace
 

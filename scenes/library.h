@@ -48,5 +48,9 @@ SceneDef two_chambers(const SceneVariant& variant = {});
 SceneDef puck(const SceneVariant& variant = {});
 SceneDef puck_skin(const SceneVariant& variant = {});
 SceneDef painted_arm(const SceneVariant& variant = {});
+SceneDef ball_drop(const SceneVariant& variant = {});
+SceneDef incline(const SceneVariant& variant = {});
+SceneDef squeezed_block(const SceneVariant& variant = {});
+SceneDef indented_puck(const SceneVariant& variant = {});
 
 }  // namespace isochor

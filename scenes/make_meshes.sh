@@ -44,6 +44,9 @@ torsion_cylinder            torsion_cylinder  1  h=0.1500
 torsion_cylinder_tet10      torsion_cylinder  2  h=0.2772
 puck                        puck              1  h=0.0072
 arm                         arm               1  h=0.0125
+ball                        ball              1  h=0.0080
+ball_small                  ball              1  h=0.0190
+indented_puck               indented_puck     1  h=0.0080
 '
 fine='
 tube_fine                   tube              1  h=0.0034
@@ -62,6 +65,7 @@ thick_sphere_fine           thick_sphere      1  h=0.0800
 thick_sphere_tet10_fine     thick_sphere      2  h=0.1300
 torsion_cylinder_fine       torsion_cylinder  1  h=0.0900
 torsion_cylinder_tet10_fine torsion_cylinder  2  h=0.1400
+ball_fine                   ball              1  h=0.0033
 '
 
 fail() {

@@ -37,6 +37,15 @@ double quantity(const SceneDef& scene, const MetricDef& m, const std::vector<Ste
       return gauge(r, m.of, "tension");
     case Quantity::cable_length:
       return gauge(r, m.of, "length");
+    case Quantity::contact_force:
+      return component({gauge(r, m.of, "force_x"), gauge(r, m.of, "force_y"), gauge(r, m.of, "force_z")},
+                       m.component);
+    case Quantity::contact_area:
+      return gauge(r, m.of, "contact_area");
+    case Quantity::contact_pressure:
+      return gauge(r, m.of, "largest_pressure");
+    case Quantity::contact_gap:
+      return gauge(r, m.of, "smallest_gap");
     case Quantity::reaction_force:
       return component(r.reactions[place_of(scene.dirichlet, m.of)].force, m.component);
     case Quantity::reaction_moment:

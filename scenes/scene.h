@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "isochor/contact.h"
 #include "isochor/effects.h"
 #include "isochor/generate.h"
 #include "isochor/lattice.h"
@@ -133,13 +134,17 @@ struct OutputDef {
 };
 
 enum class Quantity : std::uint8_t {
-  displacement,     // of a probe [m]
-  cavity_pressure,  // [Pa]
-  cavity_volume,    // [m^3]
-  cable_tension,    // [N]
-  cable_length,     // [m]
-  reaction_force,   // of a support [N]
-  reaction_moment,  // of a support, about the origin [N m]
+  displacement,      // of a probe [m]
+  cavity_pressure,   // [Pa]
+  cavity_volume,     // [m^3]
+  cable_tension,     // [N]
+  cable_length,      // [m]
+  contact_force,     // on the body, friction included [N]
+  contact_area,      // [m^2]
+  contact_pressure,  // the largest [Pa]
+  contact_gap,       // the smallest [m]
+  reaction_force,    // of a support [N]
+  reaction_moment,   // of a support, about the origin [N m]
   volume_error,
   constitutive_residual,
   min_J,
@@ -185,6 +190,7 @@ struct SceneDef {
   std::vector<WindingDef> windings;
   std::vector<StrainLimitDef> layers;
   std::vector<ValveDef> valves;
+  std::vector<ContactDef> contacts;
   Vec3 gravity{};                             // [m/s^2]
   Curve gravity_amount = Curve::constant(1);  // scales it over time
   AnalysisDef analysis;

@@ -3,12 +3,25 @@
 // writer leaves out.
 #pragma once
 
+#include <cmath>
+
 #include "scenes/json/names.h"
 
 namespace isochor::scene_json {
 
 // How a number given for a curve is meant: statics ramps to it, dynamics has it from the start.
 enum class CurveStart : std::uint8_t { zero, one, constant };
+
+inline Vec3 rotation_vector(const std::array<double, 4>& q) {
+  const Vec3 axis{q[1], q[2], q[3]};
+  const double sine = std::sqrt(dot(axis, axis));
+  return sine > 0 ? (2 * std::atan2(sine, q[0]) / sine) * axis : Vec3{};
+}
+inline std::array<double, 4> quaternion(const Vec3& turn) {
+  const double angle = std::sqrt(dot(turn, turn));
+  const double s = angle > 0 ? std::sin(0.5 * angle) / angle : 0.5;
+  return {std::cos(0.5 * angle), s * turn.x, s * turn.y, s * turn.z};
+}
 
 template <class Io>
 void describe(Io& io, OgdenTerm& t) {
@@ -203,6 +216,43 @@ void describe(Io& io, ValveDef& v) {
   io.curve("amount", v.amount, CurveStart::constant, true);
 }
 
+// The rotation of a keyframe as a vector: axis times angle [rad].
+template <class Io>
+void describe(Io& io, Pose& p) {
+  io.number("t", p.t, 0.0);
+  io.vector("position", p.position, Vec3{});
+  Vec3 turn = rotation_vector(p.rotation);
+  io.vector("turn", turn, Vec3{});
+  p.rotation = quaternion(turn);
+}
+
+template <class Io>
+void describe(Io& io, Obstacle& o) {
+  io.word("shape", o.shape, ObstacleShape::plane);
+  io.vector("position", o.position, Vec3{});
+  io.vector("axis", o.axis, Vec3{0, 0, 1});
+  io.vector("side", o.side, Vec3{1, 0, 0});
+  io.number("radius", o.radius, 0.0);
+  io.number("length", o.length, 0.0);
+  io.vector("size", o.size, Vec3{});
+  io.number("rounding", o.rounding, 0.0);
+  io.text("motion", o.motion.file);
+  io.list("keyframes", o.motion.keys);
+}
+
+template <class Io>
+void describe(Io& io, ContactDef& c) {
+  io.required_text("name", c.name);
+  io.body("body", c.body);
+  io.names("surfaces", c.surfaces);
+  io.optional_object("obstacle", c.obstacle, true);
+  io.number("compliance", c.compliance, 0.0);
+  io.number("friction", c.friction, 0.0);
+  io.number("stick_stiffness", c.stick_stiffness, 0.0);
+  io.word("initial_overlap", c.initial_overlap, InitialOverlap::report);
+  io.number("resolve_time", c.resolve_time, 1.0);
+}
+
 template <class Io>
 void describe(Io& io, CableDef& c) {
   io.required_text("name", c.name);
@@ -366,6 +416,7 @@ void describe(Io& io, SceneDef& s) {
   io.list("windings", s.windings);
   io.list("layers", s.layers);
   io.list("valves", s.valves);
+  io.list("contacts", s.contacts);
   io.vector("gravity", s.gravity, Vec3{});
   io.curve("gravity_amount", s.gravity_amount, CurveStart::zero, !(s.gravity == Vec3{}));
   io.list("probes", s.probes);

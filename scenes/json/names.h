@@ -60,9 +60,15 @@ ISOCHOR_WORDS(Solver, 4, {Solver::automatic, "automatic"}, {Solver::mumps, "mump
               {Solver::cholmod, "cholmod"}, {Solver::eigen, "eigen"});
 ISOCHOR_WORDS(Component, 4, {Component::magnitude, "magnitude"}, {Component::x, "x"}, {Component::y, "y"},
               {Component::z, "z"});
-ISOCHOR_WORDS(Quantity, 14, {Quantity::displacement, "displacement"},
+ISOCHOR_WORDS(ObstacleShape, 5, {ObstacleShape::plane, "plane"}, {ObstacleShape::sphere, "sphere"},
+              {ObstacleShape::capsule, "capsule"}, {ObstacleShape::cylinder, "cylinder"},
+              {ObstacleShape::box, "box"});
+ISOCHOR_WORDS(InitialOverlap, 2, {InitialOverlap::report, "report"}, {InitialOverlap::resolve, "resolve"});
+ISOCHOR_WORDS(Quantity, 18, {Quantity::displacement, "displacement"},
               {Quantity::cavity_pressure, "cavity_pressure"}, {Quantity::cavity_volume, "cavity_volume"},
               {Quantity::cable_tension, "cable_tension"}, {Quantity::cable_length, "cable_length"},
+              {Quantity::contact_force, "contact_force"}, {Quantity::contact_area, "contact_area"},
+              {Quantity::contact_pressure, "contact_pressure"}, {Quantity::contact_gap, "contact_gap"},
               {Quantity::reaction_force, "reaction_force"}, {Quantity::reaction_moment, "reaction_moment"},
               {Quantity::volume_error, "volume_error"},
               {Quantity::constitutive_residual, "constitutive_residual"}, {Quantity::min_J, "min_J"},

@@ -1,0 +1,156 @@
+// Bodies that meet obstacles.
+#include <cmath>
+
+#include "scenes/programs/parts.h"
+
+namespace isochor {
+
+using namespace programs;
+
+namespace {
+
+ContactDef against(const char* name, ObstacleShape shape, const Vec3& position) {
+  ContactDef c;
+  c.name = name;
+  c.obstacle.shape = shape;
+  c.obstacle.position = position;
+  return c;
+}
+
+MetricDef of_contact(const char* name, Quantity quantity, const char* contact, const char* unit,
+                     Component component = Component::magnitude) {
+  MetricDef m;
+  m.name = name;
+  m.quantity = quantity;
+  m.of = contact;
+  m.component = component;
+  m.unit = unit;
+  return m;
+}
+
+}  // namespace
+
+SceneDef ball_drop(const SceneVariant& v) {
+  SceneDef s = on_mesh("ball_drop", "Ball dropped on the floor",
+                       "A soft incompressible ball of 10 cm falls by 10 cm onto a floor and bounces.", "ball",
+                       "ball", v);
+  s.bodies[0].materials = {rubber(1e5, 0.5)};
+  s.gravity = {0, 0, -9.81};
+  s.contacts = {against("floor", ObstacleShape::plane, {0, 0, -0.15})};
+  s.analysis.type = AnalysisType::dynamics;
+  s.analysis.duration = 0.3;
+  s.analysis.step = 0.005;
+  s.probes = {{"center", {}, {0, 0, 0}}, {"bottom", {}, {0, 0, -0.05}}};
+  s.outputs.every = 5;
+  MetricDef fall = displacement("center just above the floor", "center", Component::z);
+  fall.time = 0.135;
+  s.metrics = {programs::against(fall, -0.5 * 9.81 * 0.135 * 0.14, 1e-3,
+                                 "free fall in steps of implicit Euler, g t (t + h) / 2"),
+               at_time(displacement("center at its lowest", "center", Component::z), 0.165),
+               at_time(displacement("center on its way up", "center", Component::z), 0.22),
+               of_contact("gap", Quantity::contact_gap, "floor", "m")};
+  keep_volume(s);
+  return s;
+}
+
+SceneDef incline(const SceneVariant& v) {
+  SceneDef s;
+  s.name = "incline";
+  s.title = "Block that slides down a slope";
+  s.description = "A flat block on a slope of 30 degrees with a coefficient of friction of 0.3: it slides.";
+  SceneBody b;
+  b.name = "block";
+  b.mesh = BoxMeshDef{{-0.1, -0.05, 0}, {0.1, 0.05, 0.04}, {8, 4, 3}, CellType::tet4};
+  b.element = v.element.value_or(Element::tet4_edge_smoothed);
+  b.materials = {rubber(1e5, 0.49)};
+  s.bodies = {b};
+  // Down the slope is x, and gravity leans.
+  const double slope = std::acos(-1.0) / 6, friction = 0.3;
+  s.gravity = {9.81 * std::sin(slope), 0, -9.81 * std::cos(slope)};
+  ContactDef floor = against("slope", ObstacleShape::plane, {});
+  floor.surfaces = {"z0"};
+  floor.friction = friction;
+  s.contacts = {floor};
+  s.analysis.type = AnalysisType::dynamics;
+  s.analysis.duration = 0.5;
+  s.analysis.step = 0.005;
+  s.probes = {{"middle", {}, {0, 0, 0.02}}};
+  s.outputs.every = 10;
+  const double a = 9.81 * (std::sin(slope) - friction * std::cos(slope));
+  s.metrics = {
+      programs::against(displacement("slid", "middle", Component::x), 0.5 * a * 0.5 * 0.505, 0.01,
+                        "a t (t + h) / 2, a = g (sin - mu cos): Coulomb, in steps of implicit Euler"),
+      programs::against(of_contact("push of the slope", Quantity::contact_force, "slope", "N", Component::z),
+                        0.8 * 9.81 * std::cos(slope), 0.01, "weight across the slope")};
+  return s;
+}
+
+SceneDef squeezed_block(const SceneVariant& v) {
+  SceneDef s;
+  s.name = "squeezed_block";
+  s.title = "Block pressed between cylinders and released";
+  s.description =
+      "Two rigid cylinders close on an elastic block from above and below, hold it and let it go again.";
+  SceneBody b;
+  b.name = "block";
+  b.mesh = BoxMeshDef{{-0.1, -0.05, -0.05}, {0.1, 0.05, 0.05}, {8, 4, 4}, CellType::tet4};
+  b.element = v.element.value_or(Element::tet4_edge_smoothed);
+  b.materials = {rubber(1e5, 0.5)};
+  s.bodies = {b};
+  for (const double side : {-1.0, 1.0}) {
+    ContactDef c = against(side < 0 ? "lower" : "upper", ObstacleShape::capsule, {0, 0, side * 0.072});
+    c.obstacle.axis = {0, 1, 0};
+    c.obstacle.radius = 0.02;
+    c.obstacle.length = 0.2;
+    c.friction = 0.3;
+    const double travel[] = {0, 0.032, 0.032, 0};
+    const double when[] = {0, 0.4, 0.6, 0.8};
+    for (int k = 0; k < 4; ++k) {
+      Pose p;
+      p.t = when[k];
+      p.position.z = -side * travel[k];
+      c.obstacle.motion.keys.push_back(p);
+    }
+    s.contacts.push_back(c);
+  }
+  s.analysis.type = AnalysisType::dynamics;
+  s.analysis.duration = 1.6;
+  s.analysis.step = 0.02;
+  s.probes = {{"end", {}, {0.1, 0, 0}}, {"top", {}, {0, 0, 0.05}}};
+  s.outputs.every = 5;
+  s.metrics = {
+      at_time(of_contact("push when closed", Quantity::contact_force, "upper", "N", Component::z), 0.6),
+      at_time(displacement("bulge at the end", "end", Component::x), 0.6),
+      programs::against(of_contact("push when released", Quantity::contact_force, "upper", "N"), 0, 0,
+                        "contact does not pull"),
+      displacement("top at the end", "top", Component::z)};
+  keep_volume(s);
+  return s;
+}
+
+SceneDef indented_puck(const SceneVariant& v) {
+  SceneDef s =
+      on_mesh("indented_puck", "Puck indented by a sphere",
+              "A rigid sphere of 20 mm is pressed 5 mm into an incompressible puck that is bonded to "
+              "its base.",
+              "puck", "indented_puck", v);
+  s.bodies[0].materials = {rubber(5e4, 0.5)};
+  s.dirichlet = {hold("base", "bottom")};
+  ContactDef c = against("sphere", ObstacleShape::sphere, {0, 0, 0.045});
+  c.surfaces = {"top"};
+  c.obstacle.radius = 0.02;
+  c.obstacle.motion.keys.resize(2);
+  c.obstacle.motion.keys[1].t = 1;
+  c.obstacle.motion.keys[1].position.z = -0.005;
+  s.contacts = {c};
+  s.analysis.steps = 5;
+  s.probes = {{"middle", {}, {0, 0, 0.025}}};
+  s.metrics = {of_contact("push of the sphere", Quantity::contact_force, "sphere", "N", Component::z),
+               of_contact("contact area", Quantity::contact_area, "sphere", "m^2"),
+               of_contact("largest pressure", Quantity::contact_pressure, "sphere", "Pa"),
+               displacement("middle", "middle", Component::z)};
+  keep_volume(s);
+  return s;
+}
+
+}  // namespace isochor
