@@ -6,6 +6,7 @@
 
 #include "constraints/contact_pool.h"
 #include "constraints/embedding.h"
+#include "constraints/rigid_body.h"
 #include "constraints/surface_nodes.h"
 #include "engine/builder.h"
 
@@ -45,8 +46,7 @@ class ContactInstance final : public EffectInstance {
       : pool_(std::move(pool)), rows_(std::move(rows)), row_pool_(row_pool) {}
 
   void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
-    const Obstacle& obstacle = pool_->obstacle();
-    const ObstaclePose pose = pose_of(obstacle, c.state.t);
+    const ContactFrame frame = pool_->frame(c.state.t, c.state.x);
     const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
     const bool rubs = pool_->memory() > 0;
     const double* pull =
@@ -54,17 +54,17 @@ class ContactInstance final : public EffectInstance {
     Vec3 force{};
     double normal = 0, tangential = 0, area = 0, pressure = 0, gap = std::numeric_limits<double>::infinity();
     for (Index s = 0; s < pool_->stencils(); ++s) {
-      const Distance d = distance_to(obstacle, pose.to_own(c.state.x[at(pool_->nodes()[s][0])]));
-      gap = std::min(gap, d.value);
+      gap = std::min(gap, pool_->gap(s, frame, c.state.x));
       if (!(lambda[at(s)] < 0)) continue;
       normal -= lambda[at(s)];
       area += rows_->area[at(s)];
       pressure = std::max(pressure, -lambda[at(s)] / rows_->area[at(s)]);
-      force -= lambda[at(s)] * (pose.R * d.normal);
+      const Distance d = distance_to(pool_->shape(), frame.to_own(pool_->point(s, c.state.x)));
+      force -= lambda[at(s)] * (frame.A * d.normal);
       if (!rubs) continue;
       const Vec3 f{pull[3 * s], pull[3 * s + 1], pull[3 * s + 2]};
       tangential += std::sqrt(dot(f, f));
-      force -= pose.R * f;
+      force -= frame.A * f;
     }
     const std::string name(rows_->name());
     const auto put = [&](const char* quantity, const char* unit, double value) {
@@ -107,27 +107,21 @@ class ContactEffect final : public EffectSource {
   }
 
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
-    auto faces = surface_faces(builder, def_.body, def_.surfaces, "contact \"" + def_.name + "\"");
-    if (!faces) return Error{faces.error()};
-    const BodyData& body = builder.body(def_.body);
-    const double mu = stiffest(body), length = builder.length();
-    auto pool = std::make_shared<ContactPool>(def_.name, def_.obstacle, def_.friction);
-    auto rows = std::make_shared<ContactRows>(def_.name, def_.resolve_time);
-    const auto per = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
-    for (const auto& [node, area] : surface_nodes(faces.value(), per, builder.rest())) {
-      if (builder.given_directions(node) == 3) continue;  // goes where it is told to
-      const double edge = std::sqrt(area);
-      const Index row = rows->rows();
-      pool->add(node, def_.stick_stiffness > 0 ? def_.stick_stiffness * area : 100 * mu * edge);
-      rows->map.push({&row, 1});
-      rows->weight.push_back(1);
-      rows->area.push_back(area);
-      rows->metric.push_back(1 / (mu * edge));
-      rows->measure.push_back(length);
-      if (def_.compliance > 0) rows->compliance.push_back({row, row, def_.compliance / area});
+    const std::string called = "contact \"" + def_.name + "\"";
+    std::optional<ControlPoints> points;
+    Obstacle shape = def_.obstacle;
+    if (!def_.against.empty()) {
+      auto rigid = find_rigid(builder, def_.against, called);
+      if (!rigid) return Error{rigid.error()};
+      points = rigid.value().points;
+      shape = rigid.value().shape;
     }
-    if (rows->rows() == 0) {
-      return Error{who() + "all nodes of its surfaces are held by supports; take surfaces that can move"};
+    auto pool = std::make_shared<ContactPool>(def_.name, shape, def_.friction, points);
+    auto rows = std::make_shared<ContactRows>(def_.name, def_.resolve_time);
+    if (auto r = def_.rigid.empty() ? add_nodes(builder, *pool, *rows, called)
+                                    : add_touch_points(builder, *pool, *rows, called);
+        !r) {
+      return Error{r.error()};
     }
     pool->finish();
     rows->lower.assign(rows->area.size(), -std::numeric_limits<double>::infinity());
@@ -141,29 +135,78 @@ class ContactEffect final : public EffectSource {
  private:
   std::string who() const { return "contact \"" + def_.name + "\": "; }
 
+  void add_row(ContactRows& rows, double mu, double area, double length) const {
+    const Index row = rows.rows();
+    rows.map.push({&row, 1});
+    rows.weight.push_back(1);
+    rows.area.push_back(area);
+    rows.metric.push_back(1 / (mu * std::sqrt(area)));
+    rows.measure.push_back(length);
+    if (def_.compliance > 0) rows.compliance.push_back({row, row, def_.compliance / area});
+  }
+  double stick(double mu, double area) const {
+    return def_.stick_stiffness > 0 ? def_.stick_stiffness * area : 100 * mu * std::sqrt(area);
+  }
+
+  Result<void> add_nodes(const Builder& builder, ContactPool& pool, ContactRows& rows,
+                         const std::string& called) const {
+    auto faces = surface_faces(builder, def_.body, def_.surfaces, called);
+    if (!faces) return Error{faces.error()};
+    const BodyData& body = builder.body(def_.body);
+    const double mu = stiffest(body);
+    const auto per = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
+    for (const auto& [node, area] : surface_nodes(faces.value(), per, builder.rest())) {
+      if (builder.given_directions(node) == 3) continue;  // goes where it is told to
+      pool.add(node, stick(mu, area));
+      add_row(rows, mu, area, builder.length());
+    }
+    if (rows.rows() > 0) return {};
+    return Error{who() + "all nodes of its surfaces are held by supports; take surfaces that can move"};
+  }
+
+  Result<void> add_touch_points(Builder& builder, ContactPool& pool, ContactRows& rows,
+                                const std::string& called) const {
+    if (def_.rigid == def_.against) return Error{who() + "a rigid body does not touch itself"};
+    auto rigid = find_rigid(builder, def_.rigid, called);
+    if (!rigid) return Error{rigid.error()};
+    double mu = 0;
+    for (Index b = 0; b < builder.body_count(); ++b)
+      mu = std::max(mu, stiffest(builder.body(static_cast<BodyId>(b))));
+    const double extent = smallest_extent(rigid.value().shape);
+    const auto touches = touch_points(rigid.value().shape);
+    const double area = extent * extent / static_cast<double>(touches.size());
+    for (const TouchPoint& t : touches) {
+      pool.add(rigid.value().points, t.own, t.offset, stick(mu, area));
+      add_row(rows, mu, area, builder.length());
+    }
+    return {};
+  }
+
   Result<void> find_overlap(const Builder& builder, const ContactPool& pool, ContactRows& rows) const {
-    const ObstaclePose pose = pose_of(def_.obstacle, 0);
+    const ContactFrame frame = pool.frame(0, builder.rest());
     Index worst = -1, inside = 0;
     double deepest = -1e-9 * builder.length();
     std::vector<double> overlap(rows.area.size(), 0.0);
     for (Index s = 0; s < pool.stencils(); ++s) {
-      const Index node = pool.nodes()[s][0];
-      const double gap = distance_value(def_.obstacle, pose.to_own(builder.rest()[at(node)]));
+      const double gap = pool.gap(s, frame, builder.rest());
       overlap[at(s)] = std::min(gap, 0.0);
       if (gap < -1e-9 * builder.length()) ++inside;
       if (gap >= deepest) continue;
       deepest = gap;
-      worst = node;
+      worst = pool.nodes()[s][0];
     }
     if (worst < 0) return {};
     if (def_.initial_overlap == InitialOverlap::resolve) {
       rows.overlap = std::move(overlap);
       return {};
     }
-    const BodyData& body = builder.body(def_.body);
-    return Error{who() + std::to_string(inside) + " nodes of body \"" + body.name +
-                 "\" are inside the obstacle at the start, node " + std::to_string(worst - body.first_node) +
-                 " by " + number(-deepest) +
+    const std::string what = def_.rigid.empty()
+                                 ? " nodes of body \"" + builder.body(def_.body).name +
+                                       "\" are inside the obstacle at the start, node " +
+                                       std::to_string(worst - builder.body(def_.body).first_node)
+                                 : " points of rigid body \"" + def_.rigid +
+                                       "\" are inside the obstacle at the start, the deepest";
+    return Error{who() + std::to_string(inside) + what + " by " + number(-deepest) +
                  " m; move one of the two, or set initial_overlap to resolve to have them pushed out"};
   }
 

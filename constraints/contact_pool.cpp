@@ -11,47 +11,117 @@ double norm(const Vec3& v) {
   return std::sqrt(dot(v, v));
 }
 
-Mat3 turned(const Mat3& R, const Mat3& m) {
+Vec3 tangential(const Vec3& v, const Vec3& normal) {
+  return v - dot(v, normal) * normal;
+}
+
+void add_outer(Mat3& m, double s, const Vec3& a, const Vec3& b) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) m(i, j) += s * a[i] * b[j];
+  }
+}
+
+// B^T m B.
+Mat3 pulled_back(const Mat3& B, const Mat3& m) {
   Mat3 half, out;
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) half(i, j) = R(i, 0) * m(0, j) + R(i, 1) * m(1, j) + R(i, 2) * m(2, j);
+    for (int j = 0; j < 3; ++j) half(i, j) = m(i, 0) * B(0, j) + m(i, 1) * B(1, j) + m(i, 2) * B(2, j);
   }
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j)
-      out(i, j) = half(i, 0) * R(j, 0) + half(i, 1) * R(j, 1) + half(i, 2) * R(j, 2);
+      out(i, j) = B(0, i) * half(0, j) + B(1, i) * half(1, j) + B(2, i) * half(2, j);
   }
   return out;
-}
-
-Vec3 tangential(const Vec3& v, const Vec3& normal) {
-  return v - dot(v, normal) * normal;
 }
 
 }  // namespace
 
 void ContactPool::add(Index node, double stick) {
-  nodes_.push({&node, 1});
+  std::vector<Index> nodes = {node};
+  if (points_) nodes.insert(nodes.end(), points_->node.begin(), points_->node.end());
+  nodes_.push(nodes);
   stick_.push_back(stick);
+  offset_.push_back(0);
+  rider_.emplace_back();
+  rider_own_.push_back({});
+}
+
+void ContactPool::add(const ControlPoints& body, const Vec3& own, double offset, double stick) {
+  std::vector<Index> nodes(body.node.begin(), body.node.end());
+  if (points_) nodes.insert(nodes.end(), points_->node.begin(), points_->node.end());
+  nodes_.push(nodes);
+  stick_.push_back(stick);
+  offset_.push_back(offset);
+  rider_.emplace_back(body);
+  rider_own_.push_back(own);
+}
+
+Vec3 ContactPool::point(Index s, std::span<const Vec3> x) const {
+  const auto nodes = nodes_[s];
+  const auto& rider = rider_[at(s)];
+  if (!rider) return x[at(nodes[0])];
+  Vec3 p{};
+  for (std::size_t a = 0; a < 4; ++a) p += rider->weight(a, rider_own_[at(s)]) * x[at(nodes[a])];
+  return p;
+}
+
+double ContactPool::gap(Index s, const ContactFrame& frame, std::span<const Vec3> x) const {
+  return distance_value(shape_, frame.to_own(point(s, x))) - offset_[at(s)];
+}
+
+// Weights of the nodes in the motion of the point relative to the shape, the point being at `own` in the
+// shape's axes.
+std::array<double, ContactPool::kMost> ContactPool::weights(Index s, const Vec3& own) const {
+  std::array<double, kMost> w{};
+  const auto& rider = rider_[at(s)];
+  const std::size_t count = rider ? 4 : 1;
+  w[0] = 1;
+  for (std::size_t a = 0; rider && a < 4; ++a) w[a] = rider->weight(a, rider_own_[at(s)]);
+  for (std::size_t a = 0; points_ && a < 4; ++a) w[count + a] = -points_->weight(a, own);
+  return w;
+}
+
+ContactPool::Frames ContactPool::frames(const StencilRequest& q) const {
+  Frames f;
+  f.now = frame(q.increment.t1, q.x);
+  f.lag = q.lag.x.empty() ? f.now : frame(q.increment.t1, q.lag.x);
+  f.before = q.increment.before.empty() ? f.now : frame(q.increment.t0, q.increment.before);
+  return f;
 }
 
 // Limit, tangent plane and stretch of the spring that stands for sticking friction. Without an increment
 // there is no slip, and what is left is the pull that the last step ended with.
-ContactPool::Friction ContactPool::friction(const StencilRequest& q, const Poses& poses, Index s) const {
+ContactPool::Friction ContactPool::friction(const StencilRequest& q, const Frames& frames, Index s) const {
   Friction f;
   const bool remembers = !q.memory.empty();
   const double* m = remembers ? q.memory.data() + 3 * at(s) : nullptr;
-  const Vec3 kept = remembers ? poses.now.R * Vec3{m[0], m[1], m[2]} : Vec3{};
+  const Vec3 kept = remembers ? frames.lag.A * Vec3{m[0], m[1], m[2]} : Vec3{};
   if (q.lag.x.empty()) {
     f.limit = norm(kept);
     f.z = (1 / stick_[at(s)]) * kept;
     return f;
   }
-  const auto node = at(nodes_[s][0]);
+  const auto nodes = nodes_[s];
   f.limit = friction_ * std::max(0.0, -q.lag.function_multiplier[at(s)]);
-  f.normal = poses.now.R * distance_to(obstacle_, poses.now.to_own(q.lag.x[node])).normal;
+  const Vec3 own = frames.lag.to_own(point(s, q.lag.x));
+  const Vec3 slope = distance_to(shape_, own).normal;
+  f.normal = transposed_times(frames.lag.inverse, slope);
+  f.normal = (1 / norm(f.normal)) * f.normal;
+  // Where they touch: the surface of the shape below the point, and for a point that keeps away the place on
+  // its own body.
+  const Vec3 touch = own - offset_[at(s)] * slope;
+  f.weight = weights(s, touch);
+  if (const auto& rider = rider_[at(s)]) {
+    const ContactFrame body = frame_of(*rider, q.lag.x);
+    const Vec3 place = body.to_own(frames.lag.to_world(touch));
+    for (std::size_t a = 0; a < 4; ++a) f.weight[a] = rider->weight(a, place);
+  }
   Vec3 slip{};
   if (!q.increment.before.empty()) {
-    slip = q.x[node] - poses.now.to_world(poses.before.to_own(q.increment.before[node]));
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      slip += f.weight[i] * (q.x[at(nodes[i])] - q.increment.before[at(nodes[i])]);
+    }
+    if (!points_) slip -= frames.now.to_world(touch) - frames.before.to_world(touch);
   }
   f.z = tangential(slip + (1 / stick_[at(s)]) * kept, f.normal);
   return f;
@@ -63,11 +133,46 @@ Vec3 ContactPool::pull(Index s, const Friction& f) const {
   return (f.limit / stretch) * f.z;
 }
 
+// multiplier times the second derivative of the gap. From A dy = dp - sum w_a dx_a, w_a affine in y, comes
+// A d2y = -2 dA dy, so beside the curvature of the shape there are cross terms with its control points.
+void ContactPool::add_curvature(const StencilRequest& q, const Distance& d, const ContactFrame& frame,
+                                const Vec3& own, Index s, Mat3* blocks) const {
+  const double multiplier = q.function_multiplier[at(s)];
+  double factor = multiplier;
+  if (q.definiteness == Definiteness::projected) factor = std::max(multiplier, 0.0);
+  if (q.definiteness == Definiteness::absolute) factor = std::abs(multiplier);
+  const Mat3 curvature = pulled_back(frame.inverse, d.curvature);
+  const auto c = weights(s, own);
+  const std::size_t n = nodes_[s].size(), first = rider_[at(s)] ? 4 : 1;
+  // The cross terms are indefinite: left out where a definite matrix is asked for.
+  const bool cross_terms = points_ && q.definiteness == Definiteness::exact;
+  const Vec3 normal = transposed_times(frame.inverse, d.normal);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      Mat3& block = blocks[i * (i + 1) / 2 + j];
+      for (std::size_t k = 0; k < 9; ++k) block.m[k] += factor * c[i] * c[j] * curvature.m[k];
+      if (!cross_terms) continue;
+      if (i >= first) {
+        const Vec3 e = transposed_times(frame.inverse, points_->slope(i - first));
+        add_outer(block, -multiplier * c[j], normal, e);
+      }
+      if (j >= first) {
+        const Vec3 e = transposed_times(frame.inverse, points_->slope(j - first));
+        add_outer(block, -multiplier * c[i], e, normal);
+      }
+    }
+  }
+}
+
 void ContactPool::evaluate(const StencilRequest& q, const StencilSlots& slots) const {
-  const Poses now = poses(q.increment);
+  const Frames now = frames(q);
+  // Results are read without slip: nothing moves against the friction that is left.
+  const bool slips = friction_ > 0 && !q.lag.x.empty();
   for (Index s = q.begin; s < q.end; ++s) {
-    const Distance d = distance_to(obstacle_, now.now.to_own(q.x[at(nodes_[s][0])]));
-    slots.value[at(s)] = d.value;
+    const std::size_t n = nodes_[s].size(), first = at(nodes_.offset[at(s)]);
+    const Vec3 own = now.now.to_own(point(s, q.x));
+    const Distance d = distance_to(shape_, own);
+    slots.value[at(s)] = d.value - offset_[at(s)];
     slots.energy[at(s)] = 0;
     Friction f;
     double stretch = 0, k = 0;
@@ -81,52 +186,53 @@ void ContactPool::evaluate(const StencilRequest& q, const StencilSlots& slots) c
           sticks ? 0.5 * k * stretch * stretch : f.limit * stretch - 0.5 * f.limit * f.limit / k;
     }
     if (q.want == Want::value) continue;
-    const Vec3 normal = now.now.R * d.normal;
+    const Vec3 normal = transposed_times(now.now.inverse, d.normal);
     const double multiplier = q.function_multiplier[at(s)];
-    slots.jacobian[at(s)] = normal;
-    slots.gradient[at(s)] = multiplier * normal;
-    // Results are read without slip: nothing moves against the friction that is left.
-    const bool slips = friction_ > 0 && !q.lag.x.empty();
-    if (slips) slots.gradient[at(s)] += pull(s, f);
+    const auto c = weights(s, own);
+    const Vec3 force = slips ? pull(s, f) : Vec3{};
+    for (std::size_t i = 0; i < n; ++i) {
+      slots.jacobian[first + i] = c[i] * normal;
+      slots.gradient[first + i] = multiplier * c[i] * normal + f.weight[i] * force;
+    }
     if (q.want != Want::hessian) continue;
-    double factor = multiplier;
-    if (q.definiteness == Definiteness::projected) factor = std::max(multiplier, 0.0);
-    if (q.definiteness == Definiteness::absolute) factor = std::abs(multiplier);
-    Mat3 h = turned(now.now.R, d.curvature);
-    for (double& v : h.m) v *= factor;
-    if (slips && f.limit > 0) {
-      // Sticking: k in the tangent plane. Slipping: only across the direction of the slip.
-      const double c = sticks ? k : f.limit / stretch;
-      const Vec3 along = sticks ? Vec3{} : (1 / stretch) * f.z;
-      for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j)
-          h(i, j) += c * ((i == j ? 1.0 : 0.0) - f.normal[i] * f.normal[j] - along[i] * along[j]);
+    Mat3* blocks = slots.hessian.data() + hessian_offset()[at(s)];
+    std::fill_n(blocks, n * (n + 1) / 2, Mat3{});
+    add_curvature(q, d, now.now, own, s, blocks);
+    if (!slips || !(f.limit > 0)) continue;
+    // Sticking: k in the tangent plane. Slipping: only across the direction of the slip.
+    const double stiffness = sticks ? k : f.limit / stretch;
+    Mat3 plane;
+    for (int i = 0; i < 3; ++i) plane(i, i) = stiffness;
+    add_outer(plane, -stiffness, f.normal, f.normal);
+    if (!sticks) add_outer(plane, -stiffness / (stretch * stretch), f.z, f.z);
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j <= i; ++j) {
+        for (std::size_t e = 0; e < 9; ++e)
+          blocks[i * (i + 1) / 2 + j].m[e] += f.weight[i] * f.weight[j] * plane.m[e];
       }
     }
-    slots.hessian[static_cast<std::size_t>(hessian_offset()[at(s)])] = h;
   }
 }
 
 void ContactPool::accept(const StencilRequest& q, std::span<double> memory) const {
-  const Poses now = poses(q.increment);
+  const Frames now = frames(q);
   for (Index s = 0; s < stencils(); ++s) {
-    const Vec3 f = transposed_times(now.now.R, pull(s, friction(q, now, s)));
+    const Vec3 f = now.now.inverse * pull(s, friction(q, now, s));
     for (int i = 0; i < 3; ++i) memory[3 * at(s) + static_cast<std::size_t>(i)] = f[i];
   }
 }
 
 Index ContactPool::passing(const StencilIncrement& increment, std::span<const Vec3> x,
                            std::span<Vec3> stopped) const {
-  const Poses p = poses(increment);
+  const ContactFrame before = frame(increment.t0, increment.before), now = frame(increment.t1, x);
   Index count = 0;
   for (Index s = 0; s < stencils(); ++s) {
-    const auto node = at(nodes_[s][0]);
     Vec3 met{};
-    if (!passes_through(obstacle_, p.before.to_own(increment.before[node]), p.now.to_own(x[node]), met)) {
+    if (!passes_through(shape_, before.to_own(point(s, increment.before)), now.to_own(point(s, x)), met)) {
       continue;
     }
     ++count;
-    if (!stopped.empty()) stopped[node] = p.now.to_world(met);
+    if (!stopped.empty() && !rider_[at(s)]) stopped[at(nodes_[s][0])] = now.to_world(met);
   }
   return count;
 }

@@ -1,60 +1,82 @@
-// Stencils of nodes against a rigid obstacle: the gap, and the potential of friction over an increment.
+// Stencils of points against a rigid shape: the gap, and the potential of friction over an increment.
 #pragma once
 
-#include "constraints/obstacle_shape.h"
+#include <optional>
+
+#include "constraints/contact_frame.h"
 #include "engine/pool.h"
 
 namespace isochor {
 
-// One node a stencil and one function, its distance to the obstacle [m], negative inside. Its multiplier is
-// minus the normal force.
+// One point a stencil and one function, its distance to the shape less an offset [m], negative inside. Its
+// multiplier is minus the normal force. The point is a node of a soft body, or rides on a free rigid body;
+// the shape has a given pose, or is that of a free rigid body, whose control points then are nodes of every
+// stencil, behind those of the point. With the position in the shape's axes A y = p - c and the weights
+// c_i of the nodes in the motion of the point relative to the shape,
+//   d gap/dx_i = c_i n,  n = A^-T grad d(y).
 //
-// Friction is an energy. With the normal force N and the tangent plane held from the last iteration, the slip
-// u since the increment began, measured on the obstacle, and the pull f0 that the last step left, it is
+// Friction is an energy. With the normal force N, the tangent plane and the weights c_i held from the last
+// iteration, the slip u since the increment began and the pull f0 that the last step left, it is
 //   k/2 |z|^2 where k |z| <= mu N, else mu N |z| - (mu N)^2 / (2 k),   z = u + f0 / k,
 // convex and once differentiable in x; its gradient is the friction force, k z or mu N z/|z|. The pull is
 // kept between steps, so that what sticks does not creep.
 class ContactPool final : public StencilPool {
  public:
-  ContactPool(std::string name, Obstacle obstacle, double friction)
-      : name_(std::move(name)), obstacle_(std::move(obstacle)), friction_(friction) {}
+  // The pose of `shape` counts where there are no control points.
+  ContactPool(std::string name, Obstacle shape, double friction, std::optional<ControlPoints> points = {})
+      : name_(std::move(name)), shape_(std::move(shape)), friction_(friction), points_(points) {}
   // `stick`: stiffness of friction that sticks [N/m].
   void add(Index node, double stick);
+  // A point of a free rigid body at `own` in its axes, which keeps `offset` away.
+  void add(const ControlPoints& body, const Vec3& own, double offset, double stick);
   void finish() { finish_topology(); }
 
   std::string_view name() const override { return name_; }
   bool has_energy() const override { return friction_ > 0; }
   int functions() const override { return 1; }
-  bool sees_rigid_motion() const override { return true; }
+  bool sees_rigid_motion() const override { return !points_; }
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
 
   bool has_lag() const override { return friction_ > 0; }
   int memory() const override { return friction_ > 0 ? 3 * stencils() : 0; }
   void accept(const StencilRequest& request, std::span<double> memory) const override;
-  bool has_barrier() const override { return obstacle_.shape != ObstacleShape::plane; }
+  bool has_barrier() const override { return shape_.shape != ObstacleShape::plane; }
   Index passing(const StencilIncrement& increment, std::span<const Vec3> x,
                 std::span<Vec3> stopped) const override;
 
-  const Obstacle& obstacle() const { return obstacle_; }
+  // Position of the point of a stencil, and the frame of the shape, at positions x and time t.
+  Vec3 point(Index s, std::span<const Vec3> x) const;
+  ContactFrame frame(double t, std::span<const Vec3> x) const {
+    return points_ ? frame_of(*points_, x) : frame_of(pose_of(shape_, t));
+  }
+  double gap(Index s, const ContactFrame& frame, std::span<const Vec3> x) const;
+  const Obstacle& shape() const { return shape_; }
 
  private:
-  struct Poses {
-    ObstaclePose before, now;
+  static constexpr std::size_t kMost = 8;  // nodes of a stencil
+  struct Frames {
+    ContactFrame before, now, lag;
   };
   struct Friction {
     double limit = 0;  // mu N [N]
     Vec3 normal{}, z{};
+    std::array<double, kMost> weight{};
   };
-  Poses poses(const StencilIncrement& increment) const {
-    return {pose_of(obstacle_, increment.t0), pose_of(obstacle_, increment.t1)};
-  }
-  Friction friction(const StencilRequest& request, const Poses& poses, Index s) const;
+  Frames frames(const StencilRequest& request) const;
+  std::array<double, kMost> weights(Index s, const Vec3& own) const;
+  Friction friction(const StencilRequest& request, const Frames& frames, Index s) const;
   Vec3 pull(Index s, const Friction& f) const;
+  void add_curvature(const StencilRequest& request, const Distance& d, const ContactFrame& frame,
+                     const Vec3& own, Index s, Mat3* blocks) const;
 
   std::string name_;
-  Obstacle obstacle_;
+  Obstacle shape_;
   double friction_;
-  std::vector<double> stick_;
+  std::optional<ControlPoints> points_;
+  std::vector<double> stick_, offset_;
+  // Of points on a free rigid body: which, and where; a node has none.
+  std::vector<std::optional<ControlPoints>> rider_;
+  std::vector<Vec3> rider_own_;
 };
 
 }  // namespace isochor

@@ -401,6 +401,13 @@ Index Builder::add_stencils(std::shared_ptr<const StencilPool> pool) {
   return static_cast<Index>(parts_.stencil_pools.size()) - 1;
 }
 
+Index Builder::add_point(const Vec3& rest, double mass) {
+  parts_.rest.push_back(rest);
+  parts_.mass.push_back(mass);
+  given_.emplace_back();
+  return static_cast<Index>(parts_.rest.size()) - 1;
+}
+
 Index Builder::add_rows(std::shared_ptr<const RowPool> pool) {
   parts_.row_pools.push_back(std::move(pool));
   return static_cast<Index>(parts_.row_pools.size()) - 1;

@@ -178,6 +178,11 @@ class Builder {
   }
   // Before build_solids(): inertia by the consistent mass matrix.
   void use_consistent_mass() { consistent_mass_ = true; }
+  // A node that belongs to no body, with its mass [kg]; for effects with unknowns of their own.
+  Index add_point(const Vec3& rest, double mass);
+  // Whether the scene is for statics, where nothing has inertia.
+  bool quasi_static() const { return quasi_static_; }
+  void set_quasi_static(bool on) { quasi_static_ = on; }
   void warn(std::string text) { warnings_.push_back(std::move(text)); }
 
   // Merges supports, checks the scene and hands the parts over.
@@ -203,6 +208,7 @@ class Builder {
   std::map<std::string, std::shared_ptr<void>> shared_;
   Index owner_ = -1;  // effect being built
   bool consistent_mass_ = false;
+  bool quasi_static_ = false;
 };
 
 }  // namespace isochor

@@ -79,6 +79,7 @@ Result<void> World::Impl::compile() {
 }
 
 Result<void> World::Impl::compile_once() {
+  builder.set_quasi_static(!options.scheme->has_inertia());
   for (const EffectPtr& e : sources) {
     if (auto r = e->declare(builder); !r) return r;
   }

@@ -37,7 +37,13 @@ Result<Mesh> make_mesh(const SceneBody& body, const std::string& folder, Display
   const auto& file = std::get<MeshFile>(body.mesh);
   auto mesh = read_mesh(path_in(folder, file.path), {file.scale});
   if (mesh) {
-    for (Vec3& x : mesh.value().nodes) x += file.offset;
+    const double angle = std::sqrt(dot(file.turn, file.turn)), c = std::cos(angle), s = std::sin(angle);
+    const Vec3 axis = angle > 0 ? (1 / angle) * file.turn : Vec3{};
+    for (Vec3& x : mesh.value().nodes) {
+      // Rodrigues' formula; without a turn the coordinates keep their bits.
+      if (angle > 0) x = c * x + s * cross(axis, x) + (1 - c) * dot(axis, x) * axis;
+      x += file.offset;
+    }
   }
   return mesh;
 }
@@ -120,6 +126,7 @@ Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, Bui
   for (const auto& def : scene.windings) add(winding(def));
   for (const auto& def : scene.layers) add(strain_limit(def));
   for (const auto& def : scene.ties) add(tie(def));
+  for (const auto& def : scene.rigid_bodies) add(rigid_body(def));
   // After all supports: what they hold wholly has no contact.
   for (std::size_t c = 0; c < scene.contacts.size(); ++c) {
     ContactDef def = scene.contacts[c];

@@ -79,6 +79,7 @@ Result<void> check_all_names(const SceneDef& s) {
   if (auto r = check_names("windings", s.windings, plain, seen); !r) return r;
   if (auto r = check_names("layers", s.layers, plain, seen); !r) return r;
   if (auto r = check_names("valves", s.valves, plain, seen); !r) return r;
+  if (auto r = check_names("rigid_bodies", s.rigid_bodies, plain, seen); !r) return r;
   if (auto r = check_names("contacts", s.contacts, plain, seen); !r) return r;
   return check_names("forces", s.forces, plain, seen);
 }
@@ -185,6 +186,10 @@ Result<void> check_metric(const SceneDef& s, const MetricDef& m, const std::stri
     case Quantity::cable_tension:
     case Quantity::cable_length:
       return require(where, "cable", s.cables, m.of);
+    case Quantity::rigid_x:
+    case Quantity::rigid_y:
+    case Quantity::rigid_z:
+      return require(where, "rigid body", s.rigid_bodies, m.of);
     case Quantity::contact_force:
     case Quantity::contact_area:
     case Quantity::contact_pressure:
@@ -250,6 +255,9 @@ Result<void> check_bodies(const SceneDef& s) {
     if (!(file->scale > 0) || !std::isfinite(file->scale)) {
       return Error{place("bodies", b) + ".mesh.scale = " + number(file->scale) +
                    "; it must be a positive number"};
+    }
+    if (!std::isfinite(dot(file->turn, file->turn))) {
+      return Error{place("bodies", b) + ".mesh.turn has a component that is no finite number"};
     }
     if (!std::isfinite(dot(file->offset, file->offset))) {
       return Error{place("bodies", b) + ".mesh.offset has a coordinate that is no finite number"};

@@ -33,6 +33,7 @@ constexpr auto kScenes = std::to_array<LibraryScene>({
     {"ball_drop", "Incompressible ball dropped on the floor", ball_drop},
     {"incline", "Block that slides down a slope with friction", incline},
     {"squeezed_block", "Block pressed between cylinders and released", squeezed_block},
+    {"gripper", "Three pneumatic fingers lift a rigid ball and hold it by friction", gripper},
     {"indented_puck", "Incompressible puck indented by a sphere", indented_puck},
 });
 

@@ -51,6 +51,7 @@ SceneDef painted_arm(const SceneVariant& variant = {});
 SceneDef ball_drop(const SceneVariant& variant = {});
 SceneDef incline(const SceneVariant& variant = {});
 SceneDef squeezed_block(const SceneVariant& variant = {});
+SceneDef gripper(const SceneVariant& variant = {});
 SceneDef indented_puck(const SceneVariant& variant = {});
 
 }  // namespace isochor

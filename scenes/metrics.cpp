@@ -37,6 +37,12 @@ double quantity(const SceneDef& scene, const MetricDef& m, const std::vector<Ste
       return gauge(r, m.of, "tension");
     case Quantity::cable_length:
       return gauge(r, m.of, "length");
+    case Quantity::rigid_x:
+      return gauge(r, m.of, "x");
+    case Quantity::rigid_y:
+      return gauge(r, m.of, "y");
+    case Quantity::rigid_z:
+      return gauge(r, m.of, "z");
     case Quantity::contact_force:
       return component({gauge(r, m.of, "force_x"), gauge(r, m.of, "force_y"), gauge(r, m.of, "force_z")},
                        m.component);

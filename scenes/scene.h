@@ -68,7 +68,8 @@ struct MaterialDef {
 struct MeshFile {
   std::string path;  // relative to SceneDef::folder
   double scale = 1;  // multiplies coordinates: 1e-3 for a file in millimeters
-  Vec3 offset{};     // added to the scaled coordinates [m]
+  Vec3 turn{};       // turns the scaled coordinates about the origin: axis times angle [rad]
+  Vec3 offset{};     // added then [m]
 };
 
 // Cubes around a closed surface, which is what results show.
@@ -134,11 +135,14 @@ struct OutputDef {
 };
 
 enum class Quantity : std::uint8_t {
-  displacement,      // of a probe [m]
-  cavity_pressure,   // [Pa]
-  cavity_volume,     // [m^3]
-  cable_tension,     // [N]
-  cable_length,      // [m]
+  displacement,     // of a probe [m]
+  cavity_pressure,  // [Pa]
+  cavity_volume,    // [m^3]
+  cable_tension,    // [N]
+  cable_length,     // [m]
+  rigid_x,          // position of a free rigid body [m]
+  rigid_y,
+  rigid_z,
   contact_force,     // on the body, friction included [N]
   contact_area,      // [m^2]
   contact_pressure,  // the largest [Pa]
@@ -190,6 +194,7 @@ struct SceneDef {
   std::vector<WindingDef> windings;
   std::vector<StrainLimitDef> layers;
   std::vector<ValveDef> valves;
+  std::vector<RigidBodyDef> rigid_bodies;
   std::vector<ContactDef> contacts;
   Vec3 gravity{};                             // [m/s^2]
   Curve gravity_amount = Curve::constant(1);  // scales it over time

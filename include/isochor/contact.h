@@ -1,4 +1,5 @@
-// Contact of soft bodies with rigid obstacles. Each function makes an effect for World::add.
+// Rigid bodies, and contact of soft bodies with them and with obstacles. Each function makes an effect for
+// World::add.
 #pragma once
 
 #include <array>
@@ -36,6 +37,14 @@ enum class InitialOverlap : std::uint8_t {
   resolve,  // pushed out little by little until `resolve_time`
 };
 
+// A rigid body that moves by the forces on it; dynamics only. It touches what contacts with its name say.
+struct RigidBodyDef {
+  std::string name = "rigid";
+  Obstacle shape;         // sphere, capsule, cylinder or box, where it is at rest; no motion of its own
+  double density = 1000;  // [kg/m^3]
+};
+EffectPtr rigid_body(RigidBodyDef def);
+
 // Nodes of a body's surface against one obstacle: they do not enter it, it does not pull, and friction holds
 // or brakes them. Add supports first: nodes that are held in all directions are left out.
 struct ContactDef {
@@ -43,6 +52,10 @@ struct ContactDef {
   BodyId body{};
   std::vector<std::string> surfaces;  // empty: the whole boundary of the body
   Obstacle obstacle;
+  // Names of free rigid bodies that were added before: one in place of `body`, one in place of `obstacle`. A
+  // rigid body touches with points of its shape: a sphere and the round ends of a capsule exactly, boxes and
+  // cylinders with their corners and rims.
+  std::string rigid, against;
   double compliance = 0;  // [m/Pa]: depth over pressure of a soft layer; 0: hard
   double friction = 0;    // coefficient of Coulomb friction [-]
   // Of friction below its limit, shear stress over slip [Pa/m]: the slip that remains when it sticks is

@@ -105,6 +105,7 @@ void describe(Io& io, MeshSource& m) {
   if (auto* file = std::get_if<MeshFile>(&m.mesh)) {
     io.required_text("file", file->path);
     io.number("scale", file->scale, 1.0);
+    io.vector("turn", file->turn, Vec3{});
     io.vector("offset", file->offset, Vec3{});
   }
   if (auto* box = std::get_if<BoxMeshDef>(&m.mesh)) io.object("box", *box);
@@ -241,11 +242,20 @@ void describe(Io& io, Obstacle& o) {
 }
 
 template <class Io>
+void describe(Io& io, RigidBodyDef& r) {
+  io.required_text("name", r.name);
+  io.optional_object("shape", r.shape, true);
+  io.number("density", r.density, 1000.0);
+}
+
+template <class Io>
 void describe(Io& io, ContactDef& c) {
   io.required_text("name", c.name);
   io.body("body", c.body);
   io.names("surfaces", c.surfaces);
-  io.optional_object("obstacle", c.obstacle, true);
+  io.text("rigid", c.rigid);
+  io.text("against", c.against);
+  io.optional_object("obstacle", c.obstacle, c.against.empty());
   io.number("compliance", c.compliance, 0.0);
   io.number("friction", c.friction, 0.0);
   io.number("stick_stiffness", c.stick_stiffness, 0.0);
@@ -416,6 +426,7 @@ void describe(Io& io, SceneDef& s) {
   io.list("windings", s.windings);
   io.list("layers", s.layers);
   io.list("valves", s.valves);
+  io.list("rigid_bodies", s.rigid_bodies);
   io.list("contacts", s.contacts);
   io.vector("gravity", s.gravity, Vec3{});
   io.curve("gravity_amount", s.gravity_amount, CurveStart::zero, !(s.gravity == Vec3{}));

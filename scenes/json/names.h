@@ -64,9 +64,10 @@ ISOCHOR_WORDS(ObstacleShape, 5, {ObstacleShape::plane, "plane"}, {ObstacleShape:
               {ObstacleShape::capsule, "capsule"}, {ObstacleShape::cylinder, "cylinder"},
               {ObstacleShape::box, "box"});
 ISOCHOR_WORDS(InitialOverlap, 2, {InitialOverlap::report, "report"}, {InitialOverlap::resolve, "resolve"});
-ISOCHOR_WORDS(Quantity, 18, {Quantity::displacement, "displacement"},
+ISOCHOR_WORDS(Quantity, 21, {Quantity::displacement, "displacement"},
               {Quantity::cavity_pressure, "cavity_pressure"}, {Quantity::cavity_volume, "cavity_volume"},
               {Quantity::cable_tension, "cable_tension"}, {Quantity::cable_length, "cable_length"},
+              {Quantity::rigid_x, "rigid_x"}, {Quantity::rigid_y, "rigid_y"}, {Quantity::rigid_z, "rigid_z"},
               {Quantity::contact_force, "contact_force"}, {Quantity::contact_area, "contact_area"},
               {Quantity::contact_pressure, "contact_pressure"}, {Quantity::contact_gap, "contact_gap"},
               {Quantity::reaction_force, "reaction_force"}, {Quantity::reaction_moment, "reaction_moment"},

@@ -103,8 +103,8 @@ SceneDef squeezed_block(const SceneVariant& v) {
     c.obstacle.radius = 0.02;
     c.obstacle.length = 0.2;
     c.friction = 0.3;
-    const double travel[] = {0, 0.032, 0.032, 0};
-    const double when[] = {0, 0.4, 0.6, 0.8};
+    const double travel[] = {0, 0.032, 0.032, -0.05};
+    const double when[] = {0, 0.4, 0.6, 0.9};
     for (int k = 0; k < 4; ++k) {
       Pose p;
       p.t = when[k];
@@ -114,7 +114,7 @@ SceneDef squeezed_block(const SceneVariant& v) {
     s.contacts.push_back(c);
   }
   s.analysis.type = AnalysisType::dynamics;
-  s.analysis.duration = 1.6;
+  s.analysis.duration = 1.2;
   s.analysis.step = 0.02;
   s.probes = {{"end", {}, {0.1, 0, 0}}, {"top", {}, {0, 0, 0.05}}};
   s.outputs.every = 5;
@@ -124,6 +124,84 @@ SceneDef squeezed_block(const SceneVariant& v) {
       programs::against(of_contact("push when released", Quantity::contact_force, "upper", "N"), 0, 0,
                         "contact does not pull"),
       displacement("top at the end", "top", Component::z)};
+  keep_volume(s);
+  return s;
+}
+
+SceneDef gripper(const SceneVariant& v) {
+  SceneDef s;
+  s.name = "gripper";
+  s.title = "Soft gripper";
+  s.description =
+      "Three pneumatic fingers hang around a free rigid ball on a table, are inflated until they grip it, "
+      "lift it by "
+      "4 cm and hold it by friction for five seconds.";
+  s.folder = scenes_folder();
+  const double third = 2 * std::acos(-1.0) / 3, ball = 0.025, height = -0.052, closed = 0.8, up = 2;
+  for (int k = 0; k < 3; ++k) {
+    const std::string name = "finger " + std::to_string(k + 1);
+    // From along x with the sole below to hanging down with the sole inward, then around the axis.
+    const double a = 0.5 * third, phi = k * third, c = std::cos(0.5 * phi), n = std::sin(0.5 * phi);
+    const double w0 = std::cos(a), q = std::sin(a) / std::sqrt(3.0);
+    const double w = c * w0 + n * q;
+    const Vec3 u{c * q - n * q, c * q + n * q, -c * q + n * w0};
+    const double sine = std::sqrt(dot(u, u));
+    SceneBody b;
+    b.name = name;
+    MeshFile mesh{"meshes/finger_small.msh", 1};
+    mesh.turn = (2 * std::atan2(sine, w) / sine) * u;
+    mesh.offset = {0.032 * std::cos(phi), 0.032 * std::sin(phi), 0};
+    b.mesh = mesh;
+    b.element = v.element.value_or(Element::tet4_edge_smoothed);
+    b.materials = {rubber(100e3, 0.499, 1000, "body"), rubber(3e6, 0.499, 1000, "limiting_layer")};
+    s.bodies.push_back(b);
+    const BodyId body{k};
+    DirichletDef base = hold("", "clamped");
+    base.name = "base " + std::to_string(k + 1);
+    base.where.body = body;
+    base.displacement = {0, 0, 0.04};
+    base.amount = Curve{{{closed + 0.2, 0}, {up, 1}}};
+    s.dirichlet.push_back(base);
+    CavityDef air = chamber("chamber", 0);
+    air.name = "air " + std::to_string(k + 1);
+    air.body = body;
+    air.amount = Curve{{{0, 0}, {closed, 8e3}}};
+    s.cavities.push_back(air);
+    ContactDef grip;
+    grip.name = "grip " + std::to_string(k + 1);
+    grip.body = body;
+    grip.surfaces = {"outer", "tip"};
+    grip.against = "ball";
+    grip.friction = 0.8;
+    s.contacts.push_back(grip);
+  }
+  RigidBodyDef thing;
+  thing.name = "ball";
+  thing.shape.shape = ObstacleShape::sphere;
+  thing.shape.radius = ball;
+  thing.shape.position = {0, 0, height};
+  thing.density = 300;
+  s.rigid_bodies = {thing};
+  ContactDef table = against("table", ObstacleShape::plane, {0, 0, height - ball});
+  table.rigid = "ball";
+  table.friction = 0.5;
+  s.contacts.push_back(table);
+  s.gravity = {0, 0, -9.81};
+  s.analysis.type = AnalysisType::dynamics;
+  s.analysis.duration = up + 5.2;
+  s.analysis.step = 0.04;
+  s.outputs.every = 5;
+  MetricDef lifted;
+  lifted.name = "ball when lifted";
+  lifted.quantity = Quantity::rigid_z;
+  lifted.of = "ball";
+  lifted.unit = "m";
+  MetricDef held = lifted;
+  held.name = "ball after five seconds";
+  held = programs::against(held, height + 0.04, 0.1,
+                           "it is to stay up, within a tenth of where it was lifted to");
+  lifted.time = up + 0.2;
+  s.metrics = {lifted, held};
   keep_volume(s);
   return s;
 }

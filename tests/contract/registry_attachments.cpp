@@ -144,10 +144,42 @@ void add_contacts(std::vector<SceneCase>& out, Element element) {
     def.friction = 0.3;
     if (shape == ObstacleShape::sphere) def.compliance = 1e-3;
     SceneCase c = on_block("contact, shape " + std::to_string(static_cast<int>(shape)), element,
-                           {"constraints/contact", "constraints/contact_pool", "constraints/obstacle_shape",
-                            "constraints/surface_nodes"},
+                           {"constraints/contact", "constraints/contact_pool", "constraints/contact_frame",
+                            "constraints/obstacle_shape", "constraints/surface_nodes"},
                            contact(def));
     c.stress_free = c.rigid_invariant = false;  // distances to something that does not move with the body
+    out.push_back(c);
+  }
+}
+
+void add_rigid_bodies(std::vector<SceneCase>& out, Element element) {
+  for (const auto shape :
+       {ObstacleShape::sphere, ObstacleShape::capsule, ObstacleShape::cylinder, ObstacleShape::box}) {
+    RigidBodyDef thing;
+    thing.name = "thing";
+    thing.shape.shape = shape;
+    thing.shape.position = {0.3, 0.2, 1.9};
+    thing.shape.axis = {0.3, 0.1, 1};
+    thing.shape.radius = 0.4;
+    thing.shape.length = 0.7;
+    thing.shape.size = {0.9, 0.7, 0.5};
+    if (shape == ObstacleShape::box) thing.shape.rounding = 0.05;
+    ContactDef touch;
+    touch.against = "thing";
+    touch.friction = 0.3;
+    SceneCase c = on_block(
+        "contact with a rigid body, shape " + std::to_string(static_cast<int>(shape)), element,
+        {"constraints/contact", "constraints/contact_frame", "constraints/rigid_body"}, rigid_body(thing));
+    c.effects.push_back(contact(touch));
+    c.stress_free = false;  // distances between bodies that are apart
+    out.push_back(c);
+    ContactDef floor;
+    floor.rigid = "thing";
+    floor.obstacle.position = {0, 0, -3};
+    floor.obstacle.axis = {0.1, 0.2, 1};
+    c.name = "rigid body on a floor, shape " + std::to_string(static_cast<int>(shape));
+    c.effects.back() = contact(floor);
+    c.rigid_invariant = false;
     out.push_back(c);
   }
 }
@@ -160,6 +192,7 @@ void add_attachments(std::vector<SceneCase>& out) {
     add_threads(out, element);
     add_chambers(out, element);
     add_contacts(out, element);
+    if (element == Element::tet4) add_rigid_bodies(out, element);
   }
 }
 

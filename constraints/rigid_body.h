@@ -1,0 +1,26 @@
+// Free rigid bodies as contacts find them.
+#pragma once
+
+#include <map>
+
+#include "constraints/contact_frame.h"
+#include "engine/builder.h"
+
+namespace isochor {
+
+// Shared between effects under kRigidBodies.
+struct RigidBodies {
+  std::map<std::string, RigidShape> by_name;
+};
+inline constexpr const char* kRigidBodies = "rigid bodies";
+
+Result<RigidShape> find_rigid(Builder& builder, const std::string& name, const std::string& who);
+
+// Points by which a shape touches others, in its own axes, and how far they keep away.
+struct TouchPoint {
+  Vec3 own{};
+  double offset = 0;
+};
+std::vector<TouchPoint> touch_points(const Obstacle& shape);
+
+}  // namespace isochor
