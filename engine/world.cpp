@@ -136,7 +136,8 @@ void World::Impl::allocate() {
   // Gravity acts on the mass that inertia has: with a lumped mass, free fall stays rigid. Statics has no
   // inertia and takes the consistent distribution, which is more accurate for Tet10.
   const bool lumped = options.scheme->has_inertia() && !options.consistent_mass;
-  if (lumped) weight = parts.mass;
+  // Points without a body have lumped mass always.
+  if (options.scheme->has_inertia()) weight = parts.mass;
   for (const BodyData& body : builder.bodies()) {
     if (lumped) break;
     for (const RegionData& region : body.regions) {
