@@ -38,6 +38,8 @@ Kkt::Kkt(std::shared_ptr<const System> system, const Parallel& parallel, std::un
   scale_.resize(size);
   rhs_.resize(size);
   solution_.resize(size);
+  solver_->set_parallel(parallel_);
+  if (solver_->wants_geometry()) describe_unknowns();
   const bool dual = !s.dual_rows().empty();
   if (!s.condensed_rows().empty() || border > 0 || dual) row_jacobian_.resize(s.jacobian_ends().size());
   condensed_compliance_.resize(s.condensed_rows().size());
@@ -56,6 +58,22 @@ Kkt::Kkt(std::shared_ptr<const System> system, const Parallel& parallel, std::un
   }
   dual_value_.resize(s.dual_compliance().size());
   matrix_rhs_.resize(size);
+}
+
+void Kkt::describe_unknowns() {
+  const System& s = *system_;
+  std::vector<UnknownGeometry> geometry;
+  geometry.reserve(at(s.free_unknowns()));
+  for (Index i = 0; i < s.nodes(); ++i) {
+    const Index b = s.basis_of()[at(i)];
+    for (int c = 0; c < s.first_unknown()[at(i) + 1] - s.first_unknown()[at(i)]; ++c) {
+      Vec3 direction{};
+      direction[c] = 1;
+      if (b >= 0) direction = s.free_bases()[at(b)].directions * direction;
+      geometry.push_back({i, s.parts().rest[at(i)], direction});
+    }
+  }
+  solver_->set_geometry(std::move(geometry));
 }
 
 double Kkt::compliance_of(const Values& values, std::size_t entry) const {
@@ -288,6 +306,7 @@ Kkt::Outcome Kkt::factor(const Assembly& assembly, const Values& values, StageSe
     analyzed_ = true;
   }
   const Stopwatch watch(seconds.factor);
+  solver_->set_scale(scale_);
   const FactorReport f = solver_->factor(values_);
   factor_nonzeros_ = f.factor_nonzeros;
   outcome = {f.status, f.negative_pivots, f.message};
@@ -305,6 +324,7 @@ bool Kkt::solve_matrix(StageSeconds& seconds) {
   const Stopwatch watch(seconds.solve);
   const SolveReport solved = solver_->solve(rhs_, solution_);
   residual_ = std::max(residual_, solved.residual);
+  linear_iterations_ += solved.iterations;
   const std::size_t nb = s.bordered_rows().size(), size = at(s.kkt().size);
   if (nb == 0) return solved.ok;
   // dlambda_b = S^-1 (g_b - B^T A^-1 f), u = A^-1 f - A^-1 B dlambda_b.

@@ -66,6 +66,8 @@ class Kkt {
 
   LinearSolver& linear_solver() { return *solver_; }
   double residual() const { return residual_; }  // of the last solve, relative
+  // Iterations of an iterative linear solver so far.
+  std::int64_t linear_iterations() const { return linear_iterations_; }
   // Conjugate-gradient iterations on dual rows so far; each is one solve.
   std::int64_t dual_iterations() const { return dual_iterations_; }
   // Relative residual at which they end, in the norm of the preconditioner.
@@ -75,6 +77,7 @@ class Kkt {
   int analyses() const { return analyses_; }
 
  private:
+  void describe_unknowns();
   void scale_unknowns(const Values& values);
   void add_trace(double trace);
   void add_filled(const Values& values);
@@ -96,6 +99,7 @@ class Kkt {
   std::unique_ptr<LinearSolver> solver_;
   std::int64_t factor_nonzeros_ = 0;
   int analyses_ = 0;
+  std::int64_t linear_iterations_ = 0;
   bool analyzed_ = false;
   double residual_ = 0;
   std::vector<double> values_, scale_, rhs_, solution_;

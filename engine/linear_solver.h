@@ -46,12 +46,28 @@ struct SolveReport {
   bool ok = false;
   double residual = 0;  // ||b - A x||_inf / (||A||_inf ||x||_inf + ||b||_inf), after refinement
   int refinements = 0;
+  int iterations = 0;  // of an iterative method
+};
+
+class Parallel;
+
+// Where a displacement unknown sits, for backends that build coarse spaces from rigid motions.
+struct UnknownGeometry {
+  Index node = 0;
+  Vec3 position, direction;  // rest position of its node [m]; unit vector that it moves the node along
 };
 
 class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   virtual std::string_view name() const = 0;
+  // Optional knowledge, handed over before analyze(): loops to work with (they outlive the solver), and the
+  // displacement unknowns, which come first in the pattern. Direct backends have no use for either.
+  virtual void set_parallel(const Parallel& parallel) { (void)parallel; }
+  virtual bool wants_geometry() const { return false; }
+  virtual void set_geometry(std::vector<UnknownGeometry> geometry) { (void)geometry; }
+  // Before every factor() whose matrix is S A S: the diagonal of S, alive until the next call.
+  virtual void set_scale(std::span<const double> scale) { (void)scale; }
   // Ordering and symbolic work, once a topology. The pattern must outlive the solver's use of it.
   virtual FactorReport analyze(const SymmetricPattern& pattern) = 0;
   // Numeric factorisation of the values that belong to the analysed pattern.
@@ -61,7 +77,7 @@ class LinearSolver {
   virtual SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) = 0;
 };
 
-enum class SolverKind : std::uint8_t { automatic, mumps, cholmod, eigen };
+enum class SolverKind : std::uint8_t { automatic, mumps, cholmod, eigen, iterative };
 
 // The backend asked for, or the best one built in for a system of this size. Null when the backend is not
 // part of this build.

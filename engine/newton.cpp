@@ -54,6 +54,45 @@ void Newton::choose_clamped(std::span<const double> lambda, bool first) {
   }
 }
 
+// Whether the merit falls along the direction, with a penalty in proportion. The right inertia implies it
+// (Chiang & Zavala 2016 replace the inertia by such a test).
+bool Newton::descends(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda) {
+  constexpr double largest_penalty = 1e3;
+  const double kept = gamma_;
+  const double slope = merit_slope(lambda);
+  const bool moderate = gamma_ <= std::max(kept, largest_penalty);
+  gamma_ = kept;
+  return moderate && slope <= 1e-12 * potential_magnitude(p, x);
+}
+
+// The ladder of factor(), for directions that do not descend or were not found.
+bool Newton::mend_direction(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
+                            SaddleReport& report) {
+  ++report.shifted;
+  const auto works = [&](double shift) {
+    return factor_shifted(p.mass_scale, shift, report) && direction(lambda, report) && descends(p, x, lambda);
+  };
+  for (double shift = shift_ > 0 ? std::max(1e-4, shift_ / 3) : 1e-3; shift < 1; shift *= 6) {
+    if (works(shift)) {
+      shift_ = shift;
+      return true;
+    }
+    if (report.status == SaddleStatus::out_of_memory) return false;
+  }
+  {
+    const Stopwatch watch(seconds_.evaluate);
+    assembly_.evaluate(Want::hessian, std::max(definiteness_, Definiteness::projected), x, lambda,
+                       p.prescribed);
+  }
+  ++report.projected;
+  for (double shift = 0; shift < 1e3; shift = std::max(1e-3, 30 * shift)) {
+    if (works(shift)) return true;
+    if (report.status == SaddleStatus::out_of_memory) return false;
+  }
+  if (report.message.empty()) report.message = "the linear solver found no direction of descent";
+  return false;
+}
+
 // Solves for (dx, dlambda); prescribed coordinates move by their whole gap, multipliers held at a bound by
 // the rest of their way there.
 bool Newton::direction(std::span<const double> lambda, SaddleReport& report) {
@@ -81,9 +120,10 @@ bool Newton::direction(std::span<const double> lambda, SaddleReport& report) {
     }
   }
   for (std::size_t i = 0; i < r_.size(); ++i) node_rhs_[i] = -(r_[i] + node_work_[i]);
-  const std::int64_t before = kkt_.dual_iterations();
+  const std::int64_t before = kkt_.dual_iterations(), linear_before = kkt_.linear_iterations();
   const bool ok = kkt_.solve(node_rhs_, row_rhs_, dx_, lambda_new_, seconds_);
   report.dual_iterations += kkt_.dual_iterations() - before;
+  report.linear_iterations += kkt_.linear_iterations() - linear_before;
   report.linear_residual = kkt_.residual();
   for (std::size_t i = 0; i < dx_.size(); ++i) dx_[i] += gap_[i];
   for (std::size_t r = 0; r < theta_.size(); ++r) lambda_new_[r] += lambda[r];
@@ -288,7 +328,12 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     if (!factor(p, x, lambda, report)) {
       return fail(report.status == SaddleStatus::converged ? SaddleStatus::singular : report.status);
     }
-    if (!direction(lambda, report)) return fail(SaddleStatus::singular);
+    bool found = direction(lambda, report);
+    // A backend that cannot tell the inertia is judged by its directions.
+    if (report.negative_pivots < 0 && !(found && descends(p, x, lambda))) {
+      found = mend_direction(p, x, lambda, report);
+    }
+    if (!found) return fail(SaddleStatus::singular);
     ++report.iterations;
     if (!search(p, x, lambda, report)) return fail(SaddleStatus::line_search_failed);
     const bool done = balanced(p, options, x, lambda, report);

@@ -33,6 +33,9 @@ class Newton : public SaddlePoint {
   std::vector<Vec3> dx_, x_trial_;
 
  private:
+  bool descends(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda);
+  bool mend_direction(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
+                      SaddleReport& report);
   void keep_multipliers(const SaddleProblem& p, std::span<const Vec3> x, std::span<double> lambda);
   bool correct(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                std::span<double> lambda, SaddleReport& report);

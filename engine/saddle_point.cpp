@@ -65,6 +65,7 @@ void SaddleReport::add_work(const SaddleReport& earlier) {
   shifted += earlier.shifted;
   dual_steps += earlier.dual_steps;
   dual_iterations += earlier.dual_iterations;
+  linear_iterations += earlier.linear_iterations;
 }
 
 SaddlePoint::SaddlePoint(std::shared_ptr<const System> system, const Parallel& parallel,

@@ -51,11 +51,12 @@ std::string_view to_string(SaddleStatus status);
 struct SaddleReport {
   SaddleStatus status = SaddleStatus::converged;
   int iterations = 0, factorizations = 0, trials = 0;
-  int corrections = 0;               // further steps on factors at hand
-  int projected = 0, shifted = 0;    // iterations mended by projection and by a diagonal shift
-  int dual_steps = 0;                // of dual ascent
-  std::int64_t dual_iterations = 0;  // of conjugate gradients on multipliers
-  Index negative_pivots = -1;        // of the last factorisation; rows() when the inertia is right
+  int corrections = 0;                 // further steps on factors at hand
+  int projected = 0, shifted = 0;      // iterations mended by projection and by a diagonal shift
+  int dual_steps = 0;                  // of dual ascent
+  std::int64_t dual_iterations = 0;    // of conjugate gradients on multipliers
+  std::int64_t linear_iterations = 0;  // of an iterative linear solver, for directions
+  Index negative_pivots = -1;          // of the last factorisation; rows() when the inertia is right
   double force_residual = 0, row_residual = 0, linear_residual = 0;
   double step = 0;  // largest displacement of the last step [m]
   std::string message;

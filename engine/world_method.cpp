@@ -61,6 +61,10 @@ Result<void> World::Impl::make_method(SystemParts parts) {
                  "method with continuation()"};
   }
   parts.treatment = treatment_of(options.method);
+  // Condensed rows make the stiffness as stiff as they are, which is no matter to a factorization but slows
+  // an iteration.
+  if (options.method == Method::automatic && options.solver == Solver::iterative)
+    parts.treatment = RowTreatment::saddle;
   parts.border_wide_rows = !ascent;
   auto compiled_system = System::compile(std::move(parts));
   if (!compiled_system) return Error{compiled_system.error()};

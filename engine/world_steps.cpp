@@ -19,6 +19,7 @@ void accumulate(StepReport& total, const SaddleReport& r) {
   total.shifted += r.shifted;
   total.dual_steps += r.dual_steps;
   total.dual_iterations += r.dual_iterations;
+  total.linear_iterations += r.linear_iterations;
   total.negative_pivots = r.negative_pivots;
   total.force_residual = r.force_residual;
   total.row_residual = r.row_residual;

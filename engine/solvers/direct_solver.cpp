@@ -6,6 +6,7 @@
 #include <new>
 
 #include "engine/base.h"
+#include "engine/solvers/pattern_check.h"
 
 namespace isochor {
 namespace {
@@ -23,38 +24,6 @@ double max_norm(std::span<const double> v) {
     poison += x * 0.0;
   }
   return largest + poison;
-}
-
-std::string check(const SymmetricPattern& p) {
-  const auto n = p.size;
-  if (n < 0) return "the pattern has a negative size";
-  if (n == 0) return {};
-  if (p.column_start.size() != at(n) + 1 || p.column_start.front() != 0 ||
-      p.row.size() != static_cast<std::size_t>(p.nonzeros())) {
-    return "the pattern's arrays do not fit its size";
-  }
-  for (Index c = 0; c < n; ++c) {
-    Index previous = c - 1;
-    if (p.column_start[at(c)] > p.column_start[at(c) + 1]) return "the pattern's columns are not in sequence";
-    for (auto k = p.column_start[at(c)]; k < p.column_start[at(c) + 1]; ++k) {
-      const Index r = p.row[static_cast<std::size_t>(k)];
-      if (r <= previous || r >= n) {
-        return "column " + std::to_string(c) +
-               " of the pattern must hold ascending rows of the lower triangle";
-      }
-      previous = r;
-    }
-  }
-  if (!p.group.empty()) {
-    if (p.group.size() != at(n)) return "the pattern's groups do not fit its size";
-    for (const Index g : p.group) {
-      if (g < 0 || g >= p.groups)
-        return "the pattern names group " + std::to_string(g) + ", which is out of range";
-    }
-  }
-  if (!p.multiplier.empty() && p.multiplier.size() != at(n))
-    return "the pattern's multipliers do not fit its size";
-  return {};
 }
 
 }  // namespace
@@ -100,23 +69,8 @@ FactorReport DirectSolver::factor(std::span<const double> values) {
       factored_ = true;
       return report;
     }
-    // Row sums of |A|, in the residual's storage. One NaN or infinity makes the sum of zeros NaN.
-    const double* const v = values.data();
-    std::fill(residual_.begin(), residual_.end(), 0.0);
-    double poison = 0;
-    for (Index c = 0; c < pattern_->size; ++c) {
-      double column = 0;
-      for (auto k = pattern_->column_start[at(c)]; k < pattern_->column_start[at(c) + 1]; ++k) {
-        const Index r = pattern_->row[static_cast<std::size_t>(k)];
-        const double a = std::abs(v[k]);
-        poison += v[k] * 0.0;
-        residual_[at(r)] += a;
-        if (r != c) column += a;
-      }
-      residual_[at(c)] += column;
-    }
-    norm_ = *std::max_element(residual_.begin(), residual_.end());
-    if (poison != 0 || std::isnan(poison) || !std::isfinite(norm_)) {
+    norm_ = matrix_norm(*pattern_, values, residual_);
+    if (!std::isfinite(norm_)) {
       report.status = FactorStatus::not_finite;
       report.message = "the matrix has a value that is not finite, or too large to sum";
       return report;

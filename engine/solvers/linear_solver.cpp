@@ -2,6 +2,7 @@
 
 #include "engine/solvers/cholmod_solver.h"
 #include "engine/solvers/eigen_solver.h"
+#include "engine/solvers/iterative_solver.h"
 #include "engine/solvers/mumps_solver.h"
 #include "engine/solvers/ordering.h"
 
@@ -21,6 +22,8 @@ std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, Index size) {
       return make_cholmod_solver();
     case SolverKind::eigen:
       return make_eigen_solver();
+    case SolverKind::iterative:
+      return make_iterative_solver();
     case SolverKind::automatic:
       break;
   }

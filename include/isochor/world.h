@@ -66,7 +66,9 @@ struct BodyDef {
   double guard_threshold = 0.5;
 };
 
-enum class Solver : std::uint8_t { automatic, mumps, cholmod, eigen };
+// Who solves the linear systems. All but `iterative` factor the matrix; that one iterates, with memory linear
+// in the mesh (docs/solver.md).
+enum class Solver : std::uint8_t { automatic, mumps, cholmod, eigen, iterative };
 
 // How the saddle point of a step is solved. All end at the same solution; docs/solver.md compares their cost.
 enum class Method : std::uint8_t {
@@ -133,10 +135,11 @@ struct StepReport {
   int iterations = 0;   // Newton iterations, each with its own factorization
   int corrections = 0;  // further steps on factors at hand
   int factorizations = 0, trials = 0;
-  int projected = 0, shifted = 0;    // iterations whose matrix had to be mended
-  int dual_steps = 0;                // of dual ascent
-  std::int64_t dual_iterations = 0;  // of conjugate gradients on multipliers
-  int rescues = 0;                   // increments that only a damped motion brought to their equilibrium
+  int projected = 0, shifted = 0;      // iterations whose matrix had to be mended
+  int dual_steps = 0;                  // of dual ascent
+  std::int64_t dual_iterations = 0;    // of conjugate gradients on multipliers
+  std::int64_t linear_iterations = 0;  // of Solver::iterative
+  int rescues = 0;                     // increments that only a damped motion brought to their equilibrium
   int error_rejections = 0;  // increments that converged and were taken back for WorldOptions::time_error
   Index negative_pivots = -1, expected_negative_pivots = 0;
   // follow(): directions in which the equilibrium is unstable under fixed loads; -1: the backend cannot tell.

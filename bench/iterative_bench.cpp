@@ -1,0 +1,137 @@
+// Time and memory of the iterative linear solver beside the direct one, on growing meshes.
+//
+//   isochor_bench_iterative [--quick] [--element] [iterative|mumps|cholmod ...]
+//
+// A block of Tet4 at nu = 0.4999 bends under its weight, in one static step: nodal volume rows, stabilized,
+// or element rows with --element. Each case runs in a process of its own, so that its peak of memory is its
+// own.
+#include <isochor/effects.h>
+#include <isochor/generate.h>
+#include <isochor/schemes.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace isochor;
+
+template <class T>
+T must(Result<T> result) {
+  if (!result) {
+    std::fprintf(stderr, "%s\n", result.error().c_str());
+    std::exit(2);
+  }
+  return std::move(result).value();
+}
+
+struct Outcome {
+  int cells = 0, unknowns = 0, newton = 0, linear = 0, shifted = 0, ok = 0;
+  double total = 0, factor = 0, solve = 0, tip = 0;
+};
+
+Outcome run(Solver solver, int width, VolumeSpace space) {
+  BoxMeshDef box;
+  box.upper = {0.3, 0.1, 0.1};
+  box.divisions = {3 * width, width, width};
+  WorldOptions options;
+  options.scheme = statics();
+  options.gravity = {0, 0, -9.81};
+  options.solver = solver;
+  World world = must(World::create(options));
+  BodyDef def;
+  def.mesh = must(box_mesh(box));
+  def.element = Element::tet4;
+  def.materials = {{"", must(neo_hookean({.young = 100e3, .poisson = 0.4999})), 1000}};
+  const BodyId body = must(world.add_body(def));
+  VolumeDef rows;
+  rows.body = body;
+  rows.space = space;
+  must(world.add(volume(rows)));
+  DirichletDef fixed;
+  fixed.where.body = body;
+  fixed.where.surfaces = {"x0"};
+  must(world.add(dirichlet(fixed)));
+  const StepReport r = world.step(1);
+  Outcome out;
+  out.cells = world.mesh(body).cell_count();
+  out.unknowns = world.size().matrix_size;
+  out.newton = r.iterations + r.corrections;
+  out.linear = r.linear_iterations;
+  out.shifted = r.shifted;
+  out.ok = r.status == StepStatus::converged;
+  if (!out.ok) std::fprintf(stderr, "%s\n", r.reason.c_str());
+  out.total = r.seconds.total;
+  out.factor = r.seconds.factor + r.seconds.analyze;
+  out.solve = r.seconds.solve;
+  for (const Vec3& x : world.positions(body)) out.tip = std::min(out.tip, x.z);
+  return out;
+}
+
+bool run_apart(Solver solver, const char* name, int width, VolumeSpace space) {
+  int ends[2];
+  if (pipe(ends) != 0) return false;
+  std::fflush(stdout);
+  const pid_t child = fork();
+  if (child == 0) {
+    const Outcome out = run(solver, width, space);
+    _exit(write(ends[1], &out, sizeof out) == static_cast<ssize_t>(sizeof out) ? 0 : 1);
+  }
+  close(ends[1]);
+  Outcome out;
+  const bool got = read(ends[0], &out, sizeof out) == static_cast<ssize_t>(sizeof out);
+  close(ends[0]);
+  rusage usage{};
+  int status = 0;
+  wait4(child, &status, 0, &usage);
+  if (!got) {
+    std::printf("%-10s %3d: the process ended with status %d\n", name, width, status);
+    return false;
+  }
+  std::printf(
+      "%-10s %8d tets %8d unknowns  %2d Newton %5d MINRES %d mended  total %7.1f s  setup or factor %7.1f s  "
+      "solve %7.1f s  peak %6.2f GiB  lowest z %.9f%s\n",
+      name, out.cells, out.unknowns, out.newton, out.linear, out.shifted, out.total, out.factor, out.solve,
+      static_cast<double>(usage.ru_maxrss) / (1024.0 * 1024.0), out.tip, out.ok ? "" : "  NOT CONVERGED");
+  std::fflush(stdout);
+  return out.ok != 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  bool quick = false;
+  VolumeSpace space = VolumeSpace::node;
+  std::vector<std::string> names;
+  std::vector<int> widths;
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--quick") == 0)
+      quick = true;
+    else if (std::strcmp(argv[i], "--element") == 0)
+      space = VolumeSpace::element;
+    else if (std::atoi(argv[i]) > 0)
+      widths.push_back(std::atoi(argv[i]));
+    else
+      names.emplace_back(argv[i]);
+  }
+  if (names.empty()) names = {"iterative", "mumps"};
+  // 30,000 to 250,000 tets: 5 or 6 to a cube.
+  if (widths.empty()) widths = quick ? std::vector<int>{4, 6, 8} : std::vector<int>{12, 16, 20, 24};
+  bool all = true;
+  for (const int width : widths) {
+    for (const std::string& name : names) {
+      const Solver solver = name == "mumps"     ? Solver::mumps
+                            : name == "cholmod" ? Solver::cholmod
+                                                : Solver::iterative;
+      all = run_apart(solver, name.c_str(), width, space) && all;
+    }
+  }
+  return all ? 0 : 1;
+}
