@@ -31,6 +31,9 @@ Result<World> World::create(WorldOptions options, std::uint64_t abi) {
   if (!(options.force_tolerance > 0) || !(options.row_tolerance > 0)) {
     return Error{"world: tolerances must be positive; the defaults are 1e-9 and 1e-10"};
   }
+  if (options.sweeps < 1 || options.sweeps > 100000) {
+    return Error{"world: sweeps = " + std::to_string(options.sweeps) + "; give 1 to 100000"};
+  }
   if (options.max_iterations < 1) return Error{"world: max_iterations must be at least 1"};
   if (options.threads < 0 || options.threads > 1024) {
     return Error{"world: threads = " + std::to_string(options.threads) +

@@ -1,6 +1,7 @@
 // Which method solves the saddle points of a world.
 #include "engine/dual_ascent.h"
 #include "engine/path_follower.h"
+#include "engine/position_based.h"
 #include "engine/world_impl.h"
 
 namespace isochor {
@@ -28,6 +29,8 @@ std::string_view name_of(Method method) {
       return "dual_ascent";
     case Method::augmented_ascent:
       return "augmented_ascent";
+    case Method::position_based:
+      return "position_based";
   }
   return "unknown";
 }
@@ -37,6 +40,7 @@ RowTreatment treatment_of(Method method) {
     case Method::automatic:
       break;
     case Method::saddle_point:
+    case Method::position_based:
       return RowTreatment::saddle;
     case Method::condensation:
       return RowTreatment::condensed;
@@ -60,6 +64,17 @@ Result<void> World::Impl::make_method(SystemParts parts) {
                  " finds stable equilibria only, paths of equilibria lead through unstable ones; use another "
                  "method with continuation()"};
   }
+  const bool positions = options.method == Method::position_based;
+  if (positions && !options.scheme->has_inertia()) {
+    return Error{
+        "world: method position_based moves bodies by their inertia, statics has none; use a scheme "
+        "of dynamics or another method"};
+  }
+  if (positions && options.consistent_mass) {
+    return Error{
+        "world: method position_based takes each node by itself, a consistent mass matrix couples "
+        "them; leave consistent_mass off or use another method"};
+  }
   parts.treatment = treatment_of(options.method);
   // Condensed rows make the stiffness as stiff as they are, which is no matter to a factorization but slows
   // an iteration.
@@ -74,6 +89,10 @@ Result<void> World::Impl::make_method(SystemParts parts) {
         "world: method " + std::string(name_of(options.method)) +
         " takes all rows as dual, but an effect asks for another treatment of its rows; leave it automatic"};
   }
+  if (const std::string what = PositionBased::unsupported(*system); positions && !what.empty()) {
+    return Error{"world: method position_based has no answer for this scene: " + what +
+                 "; use another method"};
+  }
   auto solver = make_linear_solver(static_cast<SolverKind>(options.solver), system->kkt().size);
   if (!solver) return Error{"world: this build has no linear solver"};
   const std::string backend(solver->name());
@@ -81,6 +100,8 @@ Result<void> World::Impl::make_method(SystemParts parts) {
     DualAscentOptions ascent_options;
     ascent_options.augmented = ascent_options.scaled = options.method == Method::augmented_ascent;
     newton = std::make_unique<DualAscent>(system, *parallel, std::move(solver), ascent_options);
+  } else if (positions) {
+    newton = std::make_unique<PositionBased>(system, *parallel, std::move(solver), options.sweeps);
   } else if (follows) {
     newton = std::make_unique<PathFollower>(system, *parallel, std::move(solver));
   } else {

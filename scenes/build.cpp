@@ -160,6 +160,7 @@ Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
   world_options.transient_rescue = a.transient_rescue;
   world_options.time_error = a.time_error;
   world_options.consistent_mass = a.consistent_mass;
+  world_options.sweeps = a.sweeps;
   world_options.gravity = scene.gravity;
   world_options.gravity_curve = scene.gravity_amount;
   auto world = World::create(std::move(world_options));

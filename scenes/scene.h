@@ -112,6 +112,7 @@ struct AnalysisDef {
   // [m]. `steps` is then the most steps taken, `duration` the load factor that ends the run.
   std::optional<double> path_step;
   Method method = Method::automatic;
+  int sweeps = 20;  // of method position_based
   Solver solver = Solver::automatic;
   int max_iterations = 60;
   Definiteness definiteness = Definiteness::exact;

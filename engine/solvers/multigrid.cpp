@@ -136,23 +136,23 @@ void Multigrid::factor(const RowLoop& loop, std::span<const double> modes, doubl
   if (dense_) factor_coarsest();
 }
 
-// Inverts the diagonal blocks with their eigenvalues made positive. Coordinates that do not exist keep an
-// identity, so that every block has an inverse.
+// Inverts the diagonal blocks with their eigenvalues made positive. Coordinates that do not exist are where
+// an eigenvalue is zero; any inverse is right for them.
 void Multigrid::invert_diagonal(const RowLoop& loop, Level& level) {
   with_size(level.a.height, [&]<int B>(std::integral_constant<int, B>) {
     using Block = Eigen::Matrix<double, B, B, Eigen::RowMajor>;
     loop(level.a.rows, grain, [&](Index begin, Index end) {
       for (Index i = begin; i < end; ++i) {
-        Eigen::Map<Block> block(level.a.value.data() + level.a.find(i, i) * (B * B));
-        for (int q = 0; q < B; ++q) {
-          if (block(q, q) == 0 && block.row(q).isZero(0)) block(q, q) = 1;
-        }
+        const Eigen::Map<const Block> block(level.a.value.data() + level.a.find(i, i) * (B * B));
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, B, B>> eigen(block);
-        const auto magnitude = eigen.eigenvalues().cwiseAbs().eval();
-        const double least = std::max(1e-8 * magnitude.maxCoeff(), 1e-300);
+        auto magnitude = eigen.eigenvalues().cwiseAbs().eval();
+        const double largest = magnitude.maxCoeff();
+        for (int q = 0; q < B; ++q) {
+          if (!(magnitude[q] > 1e-10 * largest)) magnitude[q] = largest > 0 ? largest : 1;
+        }
         Eigen::Map<Block> inverse(level.diagonal_inverse.data() + static_cast<std::ptrdiff_t>(i) * (B * B));
-        inverse = eigen.eigenvectors() * magnitude.cwiseMax(least).cwiseInverse().asDiagonal() *
-                  eigen.eigenvectors().transpose();
+        inverse =
+            eigen.eigenvectors() * magnitude.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
       }
     });
   });
@@ -340,6 +340,9 @@ void Multigrid::factor_coarsest() {
           }
         }
       });
+    }
+    for (Eigen::Index q = 0; q < n; ++q) {
+      if (dense(q, q) == 0 && dense.col(q).isZero(0)) dense(q, q) = 1;
     }
   };
   fill();

@@ -70,7 +70,8 @@ struct BodyDef {
 // in the mesh (docs/solver.md).
 enum class Solver : std::uint8_t { automatic, mumps, cholmod, eigen, iterative };
 
-// How the saddle point of a step is solved. All end at the same solution; docs/solver.md compares their cost.
+// How the saddle point of a step is solved. All but `position_based` end at the same solution; docs/solver.md
+// compares their cost.
 enum class Method : std::uint8_t {
   automatic,            // chosen when the world is compiled; World::method() says what and why
   saddle_point,         // Newton, direct factors of the whole saddle point
@@ -79,12 +80,14 @@ enum class Method : std::uint8_t {
   augmented_gradients,  // the same on an augmented stiffness: positive definite more often, fewer iterations
   dual_ascent,          // positions by Newton at fixed multipliers, these by steepest ascent; no saddle point
   augmented_ascent,     // the same on an augmented Lagrangian, steps in units of the row metric
+  position_based,  // XPBD: a fixed number of Gauss-Seidel sweeps. Cheap, and not the solution: see the page
 };
 
 struct WorldOptions {
   SchemePtr scheme;  // required: implicit_euler(), statics(), ...
   Method method = Method::automatic;
   Solver solver = Solver::automatic;
+  int sweeps = 20;          // of Method::position_based, a step
   int threads = 0;          // 0: all the machine has. The answer does not depend on it.
   int max_iterations = 60;  // Newton iterations a step
   // Hessians of elements in Newton's method. Exact ones, made definite only where the matrix of a whole step

@@ -364,6 +364,7 @@ void describe(Io& io, AnalysisDef& a) {
   io.optional_number("step", a.step);
   io.optional_number("path_step", a.path_step);
   io.word("method", a.method, Method::automatic);
+  io.integer("sweeps", a.sweeps, 20);
   io.word("solver", a.solver, Solver::automatic);
   io.integer("max_iterations", a.max_iterations, 60);
   io.word("definiteness", a.definiteness, Definiteness::exact);

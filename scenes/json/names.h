@@ -42,10 +42,10 @@ ISOCHOR_WORDS(RowTreatment, 6, {RowTreatment::automatic, "automatic"}, {RowTreat
 ISOCHOR_WORDS(SchemeWord, 5, {SchemeWord::implicit_euler, "implicit_euler"}, {SchemeWord::bdf2, "bdf2"},
               {SchemeWord::generalized_alpha, "generalized_alpha"}, {SchemeWord::newmark, "newmark"},
               {SchemeWord::implicit_midpoint, "implicit_midpoint"});
-ISOCHOR_WORDS(Method, 7, {Method::automatic, "automatic"}, {Method::saddle_point, "saddle_point"},
+ISOCHOR_WORDS(Method, 8, {Method::automatic, "automatic"}, {Method::saddle_point, "saddle_point"},
               {Method::condensation, "condensation"}, {Method::dual_gradients, "dual_gradients"},
               {Method::augmented_gradients, "augmented_gradients"}, {Method::dual_ascent, "dual_ascent"},
-              {Method::augmented_ascent, "augmented_ascent"});
+              {Method::augmented_ascent, "augmented_ascent"}, {Method::position_based, "position_based"});
 ISOCHOR_WORDS(CavityControl, 5, {CavityControl::pressure, "pressure"}, {CavityControl::volume, "volume"},
               {CavityControl::volume_ratio, "volume_ratio"}, {CavityControl::gas, "gas"},
               {CavityControl::liquid, "liquid"});
