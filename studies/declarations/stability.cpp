@@ -1,15 +1,15 @@
-// How much load a single step takes.
+// How much load a single step takes, and the torture suite.
 #include <algorithm>
 
 #include "studies/analysis.h"
 #include "studies/problems.h"
+#include "studies/torture.h"
 
 namespace isochor::studies {
 
 namespace {
 
-std::vector<Cell> cells(bool quick) {
-  std::vector<Cell> out;
+void add_loads(bool quick, std::vector<Cell>& out) {
   const Problem& p = problem("cantilever");
   for (const char* name : {"tet4_node", "edge_node", "tet10_node"}) {
     const Formulation& f = formulation(name);
@@ -24,10 +24,154 @@ std::vector<Cell> cells(bool quick) {
       out.push_back(std::move(c));
     }
   }
+}
+
+struct Flavor {
+  std::string_view name;
+  Element element;
+  bool one_field;
+};
+constexpr Flavor kFlavors[] = {{"tet4", Element::tet4, false},
+                               {"edge", Element::tet4_edge_smoothed, false},
+                               {"tet10", Element::tet10, false},
+                               {"tet4 one-field", Element::tet4, true}};
+struct Way {
+  std::string_view name;
+  Method method;
+};
+constexpr Way kWays[] = {{"saddle point", Method::saddle_point},
+                         {"dual gradients", Method::dual_gradients},
+                         {"augmented ascent", Method::augmented_ascent}};
+
+void add_torture(const TortureCase& c, const Flavor& flavor, const Way& way, double poisson, double step,
+                 double load, unsigned seeds, std::vector<Cell>& out) {
+  if (step > 0 ? !c.dynamic : !c.statics) return;
+  if (flavor.one_field && poisson == 0.5) return;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    TortureSettings settings;
+    settings.poisson = poisson;
+    settings.step = step;
+    settings.load = load;
+    settings.element = flavor.element;
+    settings.one_field = flavor.one_field;
+    settings.method = way.method;
+    settings.seed = seed;
+    Cell cell;
+    cell.id = "torture/" + std::string(c.name) + "/" + std::string(flavor.name) + "/" +
+              std::string(way.name) + "/" + text(poisson) + "/" + text(step) + "/" + text(load) + "/" +
+              std::to_string(seed);
+    cell.labels = {{"case", std::string(c.title)},
+                   {"formulation", std::string(flavor.name)},
+                   {"method", std::string(way.name)}};
+    cell.knobs = {{"nu", poisson}, {"step", step}, {"load", load}, {"seed", seed}};
+    cell.probe = [run = c.run, settings](const SceneDef&, int) -> Result<Numbers> {
+      const TortureResult r = run(settings);
+      if (r.verdict == TortureVerdict::broken) return Error{"broken: " + r.reason};
+      return Numbers{{"verdict", static_cast<double>(r.verdict)},
+                     {"newton", r.iterations},
+                     {"cutbacks", r.cutbacks},
+                     {"mended", r.shifted + r.projected},
+                     {"rescues", r.rescues},
+                     {"volume error", r.volume_error},
+                     {"min J", r.min_J},
+                     {"drift", r.drift},
+                     {"reached", r.reached},
+                     {"run seconds", r.seconds}};
+    };
+    out.push_back(std::move(cell));
+  }
+}
+
+// The whole matrix takes hours; --quick a corner of it.
+std::vector<Cell> cells(bool quick) {
+  std::vector<Cell> out;
+  add_loads(quick, out);
+  for (const TortureCase& c : torture_cases()) {
+    if (quick) {
+      if (c.name == "bubble" || c.name == "cushion" || c.name == "spin") continue;
+      for (const double step : {0.0, 0.033})
+        add_torture(c, kFlavors[0], kWays[0], 0.5, step, c.name == "compression" ? 0.6 : 1, 1, out);
+      continue;
+    }
+    for (const Flavor& flavor : kFlavors) {
+      for (const double poisson : {0.45, 0.49, 0.499, 0.4999, 0.5}) {
+        for (const double step : {0.0, 1e-4, 1e-3, 8e-3, 33e-3, 0.1}) {
+          for (const double load : {1.0, 3.0, 10.0}) {
+            if (load > c.largest_load) continue;
+            add_torture(c, flavor, kWays[0], poisson, step, load, 1, out);
+          }
+        }
+        // The other ways through the same cases, at one load and one step.
+        if (flavor.one_field) continue;
+        for (const Way& way : {kWays[1], kWays[2]}) {
+          for (const double step : {0.0, 33e-3}) add_torture(c, flavor, way, poisson, step, 1, 1, out);
+        }
+      }
+    }
+  }
   return out;
 }
 
-std::vector<Section> present(std::span<const Measured> all) {
+void add_verdicts(std::span<const Measured> all, std::vector<Section>& out) {
+  std::vector<Measured> torture;
+  for (const Measured& m : all) {
+    if (m.id.rfind("torture/", 0) == 0) torture.push_back(m);
+  }
+  if (torture.empty()) return;
+  Section s{
+      "The torture suite",
+      "Hard cases over Poisson's ratio, time step (0: statics), load, formulation and method. Solved: "
+      "balanced "
+      "within the tolerances and right in every check of the case. Told: there is no equilibrium, or the "
+      "settings are refused, and the engine says so. Stopped: an equilibrium should exist, and the engine "
+      "reports that it found none. Broken would be a number that is not finite, a state called converged "
+      "that "
+      "is not, or a rejected step that left traces. Mended: matrices of wrong inertia; cutbacks: increments "
+      "that were halved."};
+  Table t{"",
+          {"case", "formulation", "method", "runs", "solved", "told", "stopped", "broken",
+           "Newton iterations", "cutbacks", "mended", "rescues", "largest volume error", "seconds"},
+          {}};
+  for (const auto& name : label_values(torture, "case")) {
+    for (const auto& formulation_name : label_values(torture, "formulation")) {
+      for (const auto& way : label_values(torture, "method")) {
+        int runs = 0, verdicts[3] = {0, 0, 0}, broken = 0;
+        double newton = 0, cutbacks = 0, mended = 0, rescues = 0, volume = 0, seconds = 0;
+        for (const Measured& m : torture) {
+          if (m.label("case") != name || m.label("formulation") != formulation_name ||
+              m.label("method") != way)
+            continue;
+          ++runs;
+          if (!m.good()) {
+            ++broken;
+            continue;
+          }
+          ++verdicts[std::clamp(static_cast<int>(m.number("verdict")), 0, 2)];
+          newton += m.number("newton");
+          cutbacks += m.number("cutbacks");
+          mended += m.number("mended");
+          rescues += m.number("rescues");
+          volume = std::max(volume, m.number("volume error"));
+          seconds += m.number("run seconds");
+        }
+        if (runs == 0) continue;
+        if (broken > 0) t.failed.push_back(t.rows.size());
+        t.rows.push_back({name, formulation_name, way, std::to_string(runs), std::to_string(verdicts[0]),
+                          std::to_string(verdicts[1]), std::to_string(verdicts[2]), std::to_string(broken),
+                          text(newton), text(cutbacks), text(mended), text(rescues), text(volume, 2),
+                          text(seconds)});
+      }
+    }
+  }
+  s.tables.push_back(std::move(t));
+  out.push_back(std::move(s));
+}
+
+std::vector<Section> present(std::span<const Measured> everything) {
+  std::vector<Measured> all;
+  for (const Measured& m : everything) {
+    if (m.id.rfind("torture/", 0) != 0) all.push_back(m);
+  }
   Section s{"The whole load in one step",
             "The cantilever at nu = 0.5 under a multiple of gravity, asked for in one increment. "
             "Factorizations beyond the "
@@ -56,14 +200,17 @@ std::vector<Section> present(std::span<const Measured> all) {
   }
   s.diagrams.push_back(std::move(d));
   s.tables.push_back(std::move(t));
-  return {s, all_cells(all)};
+  std::vector<Section> sections{s};
+  add_verdicts(everything, sections);
+  sections.push_back(all_cells(everything));
+  return sections;
 }
 
 }  // namespace
 
 Study stability_study() {
-  return {"stability", "Stability",
-          "How much load one increment takes, and whether elements stay right side out.", cells, present};
+  return {"stability", "Stability", "How much load one increment takes, and what hard cases end as.", cells,
+          present};
 }
 
 }  // namespace isochor::studies

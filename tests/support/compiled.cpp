@@ -6,7 +6,8 @@ namespace test {
 
 using namespace isochor;
 
-Compiled compile(const std::vector<BodyDef>& bodies, const std::vector<EffectPtr>& effects, bool anchored) {
+Compiled compile(const std::vector<BodyDef>& bodies, const std::vector<EffectPtr>& effects, bool anchored,
+                 RowTreatment treatment) {
   Compiled c;
   Builder& builder = *c.builder;
   const auto failed = [&](const auto& result) {
@@ -27,7 +28,10 @@ Compiled compile(const std::vector<BodyDef>& bodies, const std::vector<EffectPtr
   }
   auto parts = builder.finish(anchored);
   if (failed(parts)) return c;
-  auto system = System::compile(std::move(parts).value());
+  SystemParts all = std::move(parts).value();
+  all.treatment = treatment;
+  all.border_wide_rows = false;
+  auto system = System::compile(std::move(all));
   if (failed(system)) return c;
   c.system = std::move(system).value();
   return c;
