@@ -29,6 +29,10 @@ Newton::Newton(std::shared_ptr<const System> system, const Parallel& parallel,
   node_work_.resize(n);
   x_trial_.resize(n);
   reaction_.resize(n);
+  venture_.x.resize(n);
+  venture_.dx.resize(n);
+  venture_.lambda.resize(m);
+  venture_.lambda_new.resize(m);
   if (s.has_bounds()) {
     bound_.assign(m, 0);
     to_bound_.assign(m, 0);
@@ -203,6 +207,56 @@ double Newton::try_step(const SaddleProblem& p, double tau, std::span<const Vec3
   return merit(p, tau, lambda_trial_);
 }
 
+// The step at the trial point is taken although the merit refused it: what should turn was stretched on the
+// tangent, stiff parts charge for that, and the next Newton step takes it back (the watchdog technique of
+// Chamberlain, Powell, Lemarechal & Pedersen 1982). Ventures that fail are followed by shorter ones, and
+// three more failures than successes end them for this solve.
+bool Newton::may_venture() const {
+  constexpr int most_failures = 3;
+  return !venture_.under_way && venture_.failed < most_failures && !has_gap_ && !any_clamped_ &&
+         !system_->has_lag();
+}
+
+void Newton::venture(std::span<const Vec3> x, std::span<const double> lambda, double enough) {
+  Venture& v = venture_;
+  v.under_way = true;
+  v.enough = enough;
+  v.gamma = gamma_;
+  std::copy(x.begin(), x.end(), v.x.begin());
+  std::copy(dx_.begin(), dx_.end(), v.dx.begin());
+  std::copy(lambda.begin(), lambda.end(), v.lambda.begin());
+  std::copy(lambda_new_.begin(), lambda_new_.end(), v.lambda_new.begin());
+}
+
+// The Newton step after a venture: where it ends is held against the merit of the venture's start. True when
+// that has gone down enough, and x and lambda are there. Otherwise everything is as before the venture, with
+// its direction, ready for a search that backtracks.
+bool Newton::settle_venture(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda,
+                            SaddleReport& report) {
+  Venture& v = venture_;
+  v.under_way = false;
+  try_step(p, 1, x, lambda, report);
+  std::copy(v.lambda_new.begin(), v.lambda_new.end(), lambda_new_.begin());
+  gamma_ = v.gamma;
+  const double value = merit(p, 1, lambda_trial_);
+  if (value <= v.enough) {
+    std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
+    keep_multipliers(p, x, lambda);
+    full_step_ = true;
+    v.failed = std::max(0, v.failed - 1);
+    v.length = std::min(1.0, 1.5 * v.length);
+    return true;
+  }
+  ++v.failed;
+  v.length *= 0.4;
+  std::copy(v.x.begin(), v.x.end(), x.begin());
+  std::copy(v.dx.begin(), v.dx.end(), dx_.begin());
+  std::copy(v.lambda.begin(), v.lambda.end(), lambda.begin());
+  assembly_.evaluate(Want::gradient, Definiteness::exact, x, lambda, p.prescribed);
+  assemble_residual(p, x, lambda);
+  return false;
+}
+
 // Backtracking to sufficient decrease; a shortened step is then polished by up to two parabolas, because
 // evaluations cost a few percent of the factorization that a better step saves.
 bool Newton::search(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda,
@@ -228,6 +282,18 @@ bool Newton::search(const SaddleProblem& p, std::span<Vec3> x, std::span<double>
         accepted = after.force <= before.force || after.force < 1e-7;
       }
       if (accepted) break;
+      // Only where backtracking would creep.
+      if (tau == 1 && parabola_minimum(tau, start, slope, value) < 0.1 && may_venture()) {
+        if (venture_.length < 1) {
+          tau = venture_.length;
+          value = try_step(p, tau, x, lambda, report);
+          if (!std::isfinite(value)) continue;
+        }
+        accepted = value <= start + 1e-4 * tau * slope;
+        if (!accepted) venture(x, lambda, start + 1e-4 * tau * slope);
+        accepted = true;
+        break;
+      }
       tau = std::clamp(parabola_minimum(tau, start, slope, value), 0.1 * tau, 0.5 * tau);
     } else {
       tau *= 0.5;
@@ -303,6 +369,9 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
   };
   if (!all_finite(p)) return fail(SaddleStatus::not_finite);
   begin(p);
+  venture_.under_way = false;
+  venture_.failed = 0;
+  venture_.length = 1;
   definiteness_ = options.definiteness;
   gamma_ = 0.1;
   const System& s = *system_;
@@ -335,7 +404,8 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     }
     if (!found) return fail(SaddleStatus::singular);
     ++report.iterations;
-    if (!search(p, x, lambda, report)) return fail(SaddleStatus::line_search_failed);
+    if (!(venture_.under_way && settle_venture(p, x, lambda, report)) && !search(p, x, lambda, report))
+      return fail(SaddleStatus::line_search_failed);
     const bool done = balanced(p, options, x, lambda, report);
     if (progress) progress(report.iterations, report.force_residual, report.row_residual);
     // With a lag, balance counts only once it is renewed.

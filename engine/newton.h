@@ -43,9 +43,23 @@ class Newton : public SaddlePoint {
   double merit_slope(std::span<const double> lambda);
   double try_step(const SaddleProblem& p, double tau, std::span<const Vec3> x, std::span<const double> lambda,
                   SaddleReport& report);
+  bool may_venture() const;
+  void venture(std::span<const Vec3> x, std::span<const double> lambda, double enough);
+  bool settle_venture(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda,
+                      SaddleReport& report);
   bool search(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda, SaddleReport& report);
 
   bool full_step_ = false;
+  // A step that the merit refused and that was taken all the same, until one more Newton step has shown
+  // where it leads: where it started, its direction, and the merit that must be reached.
+  struct Venture {
+    bool under_way = false;
+    int failed = 0;     // in this solve, less those that went well
+    double length = 1;  // of the step that is ventured
+    double enough = 0, gamma = 0;
+    std::vector<Vec3> x, dx;
+    std::vector<double> lambda, lambda_new;
+  } venture_;
   double gamma_ = 0.1;  // more would follow the volume too closely, less would lose descent; raised as needed
 
   std::vector<double> row_work_, row_rhs_;

@@ -165,7 +165,7 @@ SaddleReport World::Impl::rescue(double h) {
     std::copy(settled_x.begin(), settled_x.end(), predicted.begin());
     problem.predicted = predicted;
     problem.mass_scale = inertia * scale;
-    if (total.factorizations > 2 * options.max_iterations) break;
+    if (total.factorizations > options.max_iterations) break;
     SaddleReport r = newton->solve(problem, loose, x_trial, lambda_trial);
     const bool ok = r.status == SaddleStatus::converged;
     if (r.status == SaddleStatus::cancelled || r.status == SaddleStatus::out_of_memory) return r;
