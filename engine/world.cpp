@@ -143,6 +143,7 @@ void World::Impl::allocate() {
   if (options.scheme->has_inertia()) weight = parts.mass;
   for (const BodyData& body : builder.bodies()) {
     if (lumped) break;
+    std::fill_n(weight.begin() + body.first_node, body.mesh.nodes.size(), 0.0);
     for (const RegionData& region : body.regions) {
       add_nodal_volume(*body.reference, parts.rest, body.global_cells, region.cells, region.density, weight);
     }

@@ -132,7 +132,7 @@ Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, Bui
     ContactDef def = scene.contacts[c];
     PoseTrack& motion = def.obstacle.motion;
     if (motion.keys.empty() && !motion.file.empty()) {
-      auto track = read_poses(in_folder(scene, motion.file));
+      auto track = read_poses(path_in(scene.folder, motion.file));
       if (!track) return Error{place("contacts", c) + ".obstacle.motion: " + track.error()};
       motion = std::move(track).value();
     }

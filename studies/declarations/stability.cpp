@@ -58,7 +58,7 @@ void add_torture(const TortureCase& c, const Flavor& flavor, const Way& way, dou
     settings.seed = seed;
     Cell cell;
     cell.id = "torture/" + std::string(c.name) + "/" + std::string(flavor.name) + "/" +
-              std::string(way.name) + "/" + text(poisson) + "/" + text(step) + "/" + text(load) + "/" +
+              std::string(way.name) + "/" + text(poisson, 4) + "/" + text(step) + "/" + text(load) + "/" +
               std::to_string(seed);
     cell.labels = {{"case", std::string(c.title)},
                    {"formulation", std::string(flavor.name)},

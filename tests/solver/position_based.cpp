@@ -45,7 +45,7 @@ Moved move(const Trial& trial) {
     // Stretched by a tenth along x, to be let go.
     std::vector<Vec3> x(world.rest_positions(body).begin(), world.rest_positions(body).end());
     for (Vec3& p : x) p.x *= 1.1;
-    test::value(world.set_positions(body, x));
+    REQUIRE(world.set_positions(body, x));
   }
   Moved out;
   for (int k = 0; k < trial.steps; ++k) {
@@ -130,8 +130,9 @@ TEST_CASE("what has no place in position-based steps is refused") {
   WorldOptions options = test::static_options();
   options.method = Method::position_based;
   World world = test::make_world(options);
-  BoxMeshDef box;
-  test::add_body(world, test::value(box_mesh(box)), Element::tet4, test::neo_hookean(100e3, 0.45));
+  const BodyId body =
+      test::add_body(world, test::value(box_mesh({})), Element::tet4, test::neo_hookean(100e3, 0.45));
+  test::hold(world, body, {"x0"});
   const auto compiled = world.compile();
   REQUIRE_FALSE(compiled);
   CHECK(compiled.error().find("statics has none") != std::string::npos);
