@@ -47,6 +47,30 @@ arm                         arm               1  h=0.0125
 ball                        ball              1  h=0.0080
 ball_small                  ball              1  h=0.0190
 indented_puck               indented_puck     1  h=0.0080
+cushion_1                   cushion           1  h=0.0140
+cushion_3                   cushion           1  h=0.0066
+cushion_2_tet10             cushion           2  h=0.0085
+cushion_3_tet10             cushion           2  h=0.0066
+thick_tube_1                thick_tube        1  h=0.1200
+thick_tube_1_tet10          thick_tube        2  h=0.2200
+thick_sphere_1              thick_sphere      1  h=0.2500
+thick_sphere_1_tet10        thick_sphere      2  h=0.4500
+torsion_cylinder_1          torsion_cylinder  1  h=0.2800
+torsion_cylinder_1_tet10    torsion_cylinder  2  h=0.5000
+spine_1                     spine             1  h=0.0260
+spine_3                     spine             1  h=0.0120
+cook3d_1_hex                cook3d_hex        1  n=2
+cook3d_2_hex                cook3d_hex        1  n=4
+cook3d_3_hex                cook3d_hex        1  n=6
+cook_plane_1_hex            cook3d_hex        1  n=4 thickness=0.001 layers=1
+cook_plane_2_hex            cook3d_hex        1  n=8 thickness=0.001 layers=1
+thick_tube_1_hex            thick_tube_hex    1  n=6
+thick_tube_2_hex            thick_tube_hex    1  n=12
+thick_sphere_1_hex          thick_sphere_hex  1  n=4
+thick_sphere_2_hex          thick_sphere_hex  1  n=8
+torsion_cylinder_1_hex      torsion_cylinder_hex 1  n=2
+torsion_cylinder_2_hex      torsion_cylinder_hex 1  n=4
+tube_hex                    tube_hex          1  n=3
 '
 fine='
 tube_fine                   tube              1  h=0.0034
@@ -134,8 +158,8 @@ make() {
   awk -v name="$name" '
     $1 == "$Nodes" { getline; nodes = $2 }
     $1 == "$Elements" { inside = 1; getline; next }
-    inside && NF == 4 && ($3 == 4 || $3 == 11) && $1 == 3 { tets += $4; for (i = $4; i > 0; i--) getline; next }
-    END { printf "%-28s %6d nodes %6d tets\n", name, nodes, tets }
+    inside && NF == 4 && ($3 == 4 || $3 == 5 || $3 == 11) && $1 == 3 { cells += $4; for (i = $4; i > 0; i--) getline; next }
+    END { printf "%-28s %6d nodes %6d cells\n", name, nodes, cells }
   ' "$folder/$name.msh"
 }
 

@@ -60,32 +60,53 @@ std::vector<Profile> performance_profiles(const std::vector<std::vector<double>>
   return out;
 }
 
-const Measured* cheapest(std::span<const Measured* const> cells, double error) {
+double wall_seconds(const Measured& m) {
+  return m.seconds;
+}
+
+double processor_seconds(const Measured& m) {
+  return m.cpu_seconds;
+}
+
+const Measured* cheapest(std::span<const Measured* const> cells, double error, Cost cost) {
   const Measured* best = nullptr;
   for (const Measured* m : cells) {
     if (!m->error || *m->error > error) continue;
-    if (!best || m->seconds < best->seconds) best = m;
+    if (!best || cost(*m) < cost(*best)) best = m;
   }
   return best;
 }
 
-std::optional<double> seconds_at(std::span<const Measured* const> cells, double error) {
+std::optional<double> seconds_at(std::span<const Measured* const> cells, double error, Cost cost) {
   std::optional<double> best;
   const auto offer = [&](double seconds) {
     if (!best || seconds < *best) best = seconds;
   };
   for (const Measured* a : cells) {
     if (!a->error) continue;
-    if (*a->error <= error) offer(a->seconds);
+    if (*a->error <= error) offer(cost(*a));
     for (const Measured* b : cells) {
       // From a coarse mesh that misses it to a finer one that does not.
       if (!b->error || !(*a->error > error) || !(*b->error < error) || !(*b->error > 0)) continue;
       if (!(b->unknowns() > a->unknowns())) continue;
       const double t = std::log(*a->error / error) / std::log(*a->error / *b->error);
-      offer(std::exp(std::log(a->seconds) + t * std::log(b->seconds / a->seconds)));
+      offer(std::exp(std::log(cost(*a)) + t * std::log(cost(*b) / cost(*a))));
     }
   }
   return best;
+}
+
+std::optional<double> extrapolated_seconds(std::span<const Measured* const> cells, double error, Cost cost) {
+  const Measured *coarse = nullptr, *fine = nullptr;
+  for (const Measured* m : cells) {
+    if (!m->error || (fine && m->unknowns() <= fine->unknowns())) continue;
+    coarse = fine;
+    fine = m;
+  }
+  if (!coarse || !(*fine->error > error) || !(*fine->error < *coarse->error)) return {};
+  if (!(cost(*fine) > cost(*coarse))) return {};
+  const double t = std::log(*fine->error / error) / std::log(*coarse->error / *fine->error);
+  return cost(*fine) * std::exp(t * std::log(cost(*fine) / cost(*coarse)));
 }
 
 Cells where(std::span<const Measured> cells, const std::string& key, const std::string& value) {

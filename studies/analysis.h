@@ -28,12 +28,23 @@ struct Profile {
 };
 std::vector<Profile> performance_profiles(const std::vector<std::vector<double>>& costs);
 
+// What a cell cost [s]: wall time, or processor time of all threads, which a busy machine does not stretch.
+using Cost = double (*)(const Measured&);
+double wall_seconds(const Measured& m);
+double processor_seconds(const Measured& m);
+
 // The cheapest cell whose error is at most `error`; null where none is.
-const Measured* cheapest(std::span<const Measured* const> cells, double error);
+const Measured* cheapest(std::span<const Measured* const> cells, double error, Cost cost = wall_seconds);
 
 // Seconds at which the straight line in log-log through a method's cells crosses `error`, between two of its
 // cells or at one; empty where they do not reach it. What a table says when meshes are few.
-std::optional<double> seconds_at(std::span<const Measured* const> cells, double error);
+std::optional<double> seconds_at(std::span<const Measured* const> cells, double error,
+                                 Cost cost = wall_seconds);
+
+// Where a method does not reach the error: the line through its two finest meshes, drawn on. A guess, for
+// comparisons that say so; empty where the error does not shrink from the one to the other.
+std::optional<double> extrapolated_seconds(std::span<const Measured* const> cells, double error,
+                                           Cost cost = wall_seconds);
 
 // Helpers to select. Pointers live as long as the list.
 using Cells = std::vector<const Measured*>;

@@ -12,16 +12,20 @@ struct Formulation {
   std::string_view name;   // in ids: "tet10_node"
   std::string_view label;  // in diagrams
   Element element;
-  // Complete one-field energy without volume rows. It refuses nu = 0.5 and is run at kOneFieldPoisson.
-  bool one_field = false;
+  bool one_field = false;  // complete energy without volume rows; refuses nu = 0.5
   VolumeSpace space = VolumeSpace::node;
-  double stabilization = 1;  // of nodal rows on linear tets
+  double stabilization = 1;  // of nodal rows on linear elements
+  // A local penalty on changes of volume, beside a zone that keeps its total.
+  bool penalty = false;
+  // Largest Poisson's ratio at which it is run where a problem asks for 0.5.
+  double most_poisson = 0.5;
 
   bool quadratic() const { return element == Element::tet10; }
+  bool hexahedra() const { return element == Element::hex8; }
 };
 
-// Poisson's ratio of a one-field formulation where a problem asks for 0.5.
-inline constexpr double kOneFieldPoisson = 0.499;
+// Those of one-field formulations and of nodal rows without stabilization, whose matrix is singular at 0.5.
+inline constexpr double kOneFieldPoisson = 0.499, kPlainPoisson = 0.4999;
 
 std::span<const Formulation> formulations();
 const Formulation& formulation(std::string_view name);  // must exist

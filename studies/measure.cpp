@@ -3,9 +3,11 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "scenes/scene_file.h"
 #include "studies/run_study.h"
@@ -66,6 +68,25 @@ double wall_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// A folder of its own for the outputs of a run, removed with it.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "isochor-XXXXXX").string();
+    if (const char* made = mkdtemp(name.data())) path_ = made;
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder() {
+    std::error_code code;
+    if (!path_.empty()) std::filesystem::remove_all(path_, code);
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
 struct Timed {
   double wall = 0, cpu = 0;
   RunResult run;      // of a scene
@@ -75,6 +96,8 @@ struct Timed {
 
 Timed run_once(const Cell& cell, int threads, const std::function<bool()>& stop) {
   Timed t;
+  std::optional<ScratchFolder> scratch;
+  if (cell.outputs) scratch.emplace();
   const double wall = wall_now(), cpu = cpu_now();
   if (cell.probe) {
     auto numbers = cell.probe(cell.scene, threads);
@@ -89,6 +112,7 @@ Timed run_once(const Cell& cell, int threads, const std::function<bool()>& stop)
     RunOptions options;
     options.threads = threads;
     options.stop = stop;
+    if (scratch) options.folder = scratch->path();
     t.run = run_scene(cell.scene, options);
   }
   t.cpu = cpu_now() - cpu;
@@ -156,6 +180,7 @@ std::string fingerprint(const Cell& cell, int threads, int repeats) {
     if (const auto* lattice = std::get_if<LatticeMesh>(&body.mesh))
       fnv.add_file(std::filesystem::path(cell.scene.folder) / lattice->surface);
   }
+  if (cell.outputs) fnv.add("outputs");
   fnv.add(std::to_string(cell.threads > 0 ? cell.threads : threads) + " " + std::to_string(repeats));
   return fnv.text();
 }

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "engine/assembly.h"
+#include "engine/mesh/cell_shape.h"
 #include "engine/parallel.h"
 #include "engine/system.h"
 #include "scenes/explain.h"
@@ -28,6 +29,7 @@ Result<Blocks> blocks(const Formulation& f, int n, double bulk, double stabiliza
   BodyDef body;
   BoxMeshDef box;
   box.divisions = {n, n, n};
+  if (f.hexahedra()) box.cell_type = CellType::hex8;
   auto mesh = box_mesh(box);
   if (!mesh) return Error{mesh.error()};
   body.mesh = std::move(mesh).value();
@@ -79,14 +81,15 @@ Result<Blocks> blocks(const Formulation& f, int n, double bulk, double stabiliza
 
 // Neighbors across faces: for every inner face the two cells that share it.
 std::vector<std::array<std::size_t, 2>> inner_faces(const Mesh& mesh) {
-  constexpr std::size_t kFaces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+  const CellShape& shape = cell_shape(mesh.cell_type);
   const auto stride = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
-  std::map<std::array<Index, 3>, std::size_t> open;
+  std::map<std::array<Index, 4>, std::size_t> open;
   std::vector<std::array<std::size_t, 2>> pairs;
   for (std::size_t c = 0; c * stride < mesh.cells.size(); ++c) {
-    for (const auto& face : kFaces) {
-      std::array<Index, 3> nodes{};
-      for (std::size_t k = 0; k < 3; ++k) nodes[k] = mesh.cells[c * stride + face[k]];
+    for (std::size_t side = 0; side < shape.sides; ++side) {
+      std::array<Index, 4> nodes{-1, -1, -1, -1};
+      for (std::size_t k = 0; k < shape.side_corners; ++k)
+        nodes[k] = mesh.cells[c * stride + shape.side[side][k]];
       std::sort(nodes.begin(), nodes.end());
       const auto [it, first] = open.emplace(nodes, c);
       if (!first) pairs.push_back({it->second, c});

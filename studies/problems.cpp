@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "studies/problem_scenes.h"
+
 namespace isochor::studies {
 
 namespace {
@@ -9,6 +11,8 @@ namespace {
 constexpr std::string_view kTaylorHood =
     "Taylor-Hood (dolfinx 0.5.2, deal.II 9.4), extrapolated; docs/reference.md";
 constexpr std::string_view kClosedForm = "closed form; docs/reference.md";
+constexpr std::string_view kFinest =
+    "our own finest mesh, Tet10 with linear pressure, extrapolated: isochor study references";
 const std::vector<Problem>& table() {
   static const std::vector<Problem> problems{
       {"cantilever",
@@ -28,7 +32,8 @@ const std::vector<Problem>& table() {
        0.0015 / 8.510,
        kTaylorHood,
        {"cook3d_1", "cook3d_2", "cook3d_3"},
-       {"cook3d_1_tet10", "cook3d_2_tet10"}},
+       {"cook3d_1_tet10", "cook3d_2_tet10"},
+       {"cook3d_1_hex", "cook3d_2_hex", "cook3d_3_hex"}},
       {"cook_plane",
        "Cook's membrane, plane strain",
        cook_plane,
@@ -38,6 +43,7 @@ const std::vector<Problem>& table() {
        kTaylorHood,
        {"cook_plane_1", "cook_plane_2"},
        {"cook_plane_tet10"},
+       {"cook_plane_1_hex", "cook_plane_2_hex"},
        2},
       {"thick_tube",
        "Thick tube, volume given",
@@ -46,8 +52,9 @@ const std::vector<Problem>& table() {
        0.5740535723065197,
        0,
        kClosedForm,
-       {"thick_tube"},
-       {"thick_tube_tet10"},
+       {"thick_tube_1", "thick_tube"},
+       {"thick_tube_1_tet10", "thick_tube_tet10"},
+       {"thick_tube_1_hex", "thick_tube_2_hex"},
        2},
       {"thick_sphere",
        "Thick sphere, volume given",
@@ -56,8 +63,9 @@ const std::vector<Problem>& table() {
        0.8069266031066276,
        0,
        kClosedForm,
-       {"thick_sphere"},
-       {"thick_sphere_tet10"}},
+       {"thick_sphere_1", "thick_sphere"},
+       {"thick_sphere_1_tet10", "thick_sphere_tet10"},
+       {"thick_sphere_1_hex", "thick_sphere_2_hex"}},
       {"torsion",
        "Torsion of a cylinder",
        torsion,
@@ -65,8 +73,46 @@ const std::vector<Problem>& table() {
        1.570796326794897,
        0,
        kClosedForm,
-       {"torsion_cylinder"},
-       {"torsion_cylinder_tet10"}},
+       {"torsion_cylinder_1", "torsion_cylinder"},
+       {"torsion_cylinder_1_tet10", "torsion_cylinder_tet10"},
+       {"torsion_cylinder_1_hex", "torsion_cylinder_2_hex"}},
+      {"block",
+       "Compressed block",
+       compressed_block,
+       "top down",
+       -0.03336,
+       3e-3,
+       kFinest,
+       {std::array{2, 2, 4}, std::array{4, 4, 8}, std::array{8, 8, 16}, std::array{12, 12, 24}},
+       {std::array{1, 1, 2}, std::array{2, 2, 4}, std::array{4, 4, 8}, std::array{6, 6, 12}},
+       {},
+       3,
+       0.4999},
+      {"cushion",
+       "Inflated cushion",
+       cushion,
+       "rise of the top",
+       0.01883,
+       3e-3,
+       kFinest,
+       {"cushion_1", "cushion", "cushion_3"},
+       {"cushion_1", "cushion", "cushion_2_tet10"},
+       {},
+       3,
+       0.499},
+      {"swing",
+       "Swing of a beam",
+       swing,
+       "tip down",
+       -0.3250,
+       5e-4,
+       kFinest,
+       {std::array{10, 1, 1}, std::array{20, 2, 2}, std::array{40, 4, 4}},
+       {std::array{5, 1, 1}, std::array{10, 1, 1}, std::array{20, 2, 2}},
+       {},
+       3,
+       0.5,
+       true},
   };
   return problems;
 }
@@ -83,12 +129,18 @@ const Problem& problem(std::string_view name) {
   return it == all.end() ? all.front() : *it;
 }
 
+const std::vector<LevelMesh>& meshes(const Problem& p, const Formulation& f) {
+  if (f.quadratic()) return p.quadratic;
+  const bool boxes = std::holds_alternative<std::array<int, 3>>(p.linear.front());
+  return f.hexahedra() && !boxes ? p.hexahedra : p.linear;
+}
+
 std::size_t level_count(const Problem& p, const Formulation& f) {
-  return f.quadratic() ? p.quadratic.size() : p.linear.size();
+  return meshes(p, f).size();
 }
 
 SceneDef make_scene(const Problem& p, const Formulation& f, std::size_t level) {
-  const LevelMesh& mesh = f.quadratic() ? p.quadratic[level] : p.linear[level];
+  const LevelMesh& mesh = meshes(p, f)[level];
   SceneVariant variant;
   if (const auto* name = std::get_if<std::string_view>(&mesh)) variant.mesh = *name;
   variant.element = f.element;
@@ -107,6 +159,7 @@ Cell problem_cell(const Problem& p, const Formulation& f, std::size_t level) {
               {"formulation", std::string(f.label)},
               {"mesh", std::to_string(level + 1)}};
   c.knobs["dimension"] = p.dimension;
+  c.knobs["nu"] = p.nu >= 0.5 ? f.most_poisson : p.nu;
   c.scene = make_scene(p, f, level);
   c.metric = std::string(p.metric);
   c.reference = p.reference;

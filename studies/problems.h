@@ -25,12 +25,17 @@ struct Problem {
   double uncertainty = 0;  // of the reference, relative
   std::string_view source;
   std::vector<LevelMesh> linear, quadratic;  // coarse to fine, for Tet4 and Tet10
-  int dimension = 3;                         // 2: a slab one element thick, refined in its plane
+  // For Hex8; empty: the formulations on hexahedra are left out. Boxes take the meshes of the Tet4.
+  std::vector<LevelMesh> hexahedra = {};
+  int dimension = 3;     // 2: a slab one element thick, refined in its plane
+  double nu = 0.5;       // of the scene
+  bool dynamic = false;  // a motion: the time step adds an error of its own
 };
 
 std::span<const Problem> problems();
 const Problem& problem(std::string_view name);  // must exist
 
+const std::vector<LevelMesh>& meshes(const Problem& p, const Formulation& f);
 std::size_t level_count(const Problem& p, const Formulation& f);
 // The problem on one of its meshes; `level` starts at 0, the coarsest.
 SceneDef make_scene(const Problem& p, const Formulation& f, std::size_t level);

@@ -36,6 +36,7 @@ struct Cell {
   double uncertainty = 0;  // of the reference, relative: errors below it mean nothing
   int threads = 0;         // 0: as the study is run
   Probe probe;             // runs instead of the scene where given
+  bool outputs = false;    // write its outputs, and count their time
   bool guarded = false;    // held against committed expectations by `study --check`
 };
 
@@ -98,5 +99,6 @@ Study stability_study();
 Study zones_study();
 Study pressure_study();
 Study stabilization_study();
+Study references_study();
 
 }  // namespace isochor::studies

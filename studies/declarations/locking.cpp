@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "studies/analysis.h"
+#include "studies/locking_robots.h"
 #include "studies/pressure_tests.h"
 #include "studies/problems.h"
 #include "studies/study.h"
@@ -49,7 +50,8 @@ void add_tips(std::vector<Cell>& out, bool quick) {
 
 void add_inf_sup(std::vector<Cell>& out, bool quick) {
   for (const Formulation& f : formulations()) {
-    if (f.one_field) continue;
+    // One row a body cannot be unstable.
+    if (f.one_field || f.space == VolumeSpace::body) continue;
     for (const int n : {2, 3, 4, 6}) {
       if (n == 6 && (quick || f.quadratic())) continue;
       Cell c;
@@ -67,6 +69,7 @@ void add_roughness(std::vector<Cell>& out, bool quick) {
   for (const char* name : {"cantilever", "cook"}) {
     const Problem& p = problem(name);
     for (const Formulation& f : formulations()) {
+      if (level_count(p, f) == 0) continue;
       Cell c;
       const std::size_t level = quick ? 0 : 1;
       c.id = "roughness/" + std::string(name) + "/" + std::string(f.name);
@@ -85,6 +88,7 @@ std::vector<Cell> cells(bool quick) {
   add_tips(out, quick);
   add_inf_sup(out, quick);
   add_roughness(out, quick);
+  add_robot_locking(out, quick);
   return out;
 }
 
@@ -200,17 +204,21 @@ Section roughness_section(std::span<const Measured> all) {
 }
 
 std::vector<Section> present(std::span<const Measured> all) {
-  return {tip_section(all), inf_sup_section(all), roughness_section(all), all_cells(all)};
+  return {tip_section(all),     spine_section(all),     tube_section(all),
+          inf_sup_section(all), roughness_section(all), all_cells(all)};
 }
 
 }  // namespace
 
 Study locking_study() {
   return {
-      "locking", "Locking",
+      "locking",
+      "Locking",
       "Which formulations stiffen as the material becomes incompressible, which pairs of displacement and "
       "pressure are stable, and how smooth their pressures are.",
-      cells, present};
+      cells,
+      present,
+      0};
 }
 
 }  // namespace isochor::studies

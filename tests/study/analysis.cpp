@@ -59,6 +59,14 @@ TEST_CASE("the cost of an error is read off the line between two meshes") {
   CHECK_FALSE(seconds_at(cells, 1e-4));
   CHECK(cheapest(cells, 0.01) == &fine);
   CHECK(cheapest(cells, 1e-4) == nullptr);
+  // Two decades of error for one of time, and another one of error beyond.
+  CHECK(extrapolated_seconds(cells, 1e-4).value() == Approx(10 * std::sqrt(10.0)));
+  CHECK_FALSE(extrapolated_seconds(cells, 0.01));
+  Measured stuck = point(5000, 100, 0.002);
+  const std::vector<const Measured*> stuck_cells{&coarse, &fine, &stuck};
+  CHECK_FALSE(extrapolated_seconds(stuck_cells, 1e-4));
+  stuck.cpu_seconds = 7;
+  CHECK(seconds_at(std::vector<const Measured*>{&stuck}, 0.01, processor_seconds).value() == 7);
 }
 
 TEST_CASE("a page keeps what JSON cannot say out of its lines") {

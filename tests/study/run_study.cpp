@@ -12,6 +12,7 @@
 
 #include "catch.h"
 #include "studies/formulations.h"
+#include "studies/problems.h"
 #include "studies/store.h"
 
 using namespace isochor;
@@ -214,4 +215,51 @@ TEST_CASE("every formulation builds") {
   CHECK(scene.bodies[0].materials[0].constants.poisson == 0.5);
   apply(formulation("tet4"), scene);
   CHECK(scene.bodies[0].materials[0].constants.poisson == kOneFieldPoisson);
+  // A zone has its penalty, and no other formulation keeps it; boxes have the cells of the element.
+  scene = block(0.5);
+  apply(formulation("tet4_zone"), scene);
+  CHECK(scene.bodies[0].materials[0].compression_penalty.modulus > 0);
+  apply(formulation("hex8_node"), scene);
+  CHECK(scene.bodies[0].materials[0].compression_penalty.modulus == 0);
+  CHECK(std::get<BoxMeshDef>(scene.bodies[0].mesh).cell_type == CellType::hex8);
+}
+
+TEST_CASE("every problem has its meshes, and two levels of most formulations") {
+  for (const Problem& p : problems()) {
+    for (const Formulation& f : formulations()) {
+      INFO(std::string(p.name) << ", " << std::string(f.name));
+      // Robots have no meshes of hexahedra.
+      if (level_count(p, f) == 0) {
+        CHECK(f.hexahedra());
+        continue;
+      }
+      const Cell c = problem_cell(p, f, 0);
+      CHECK(c.reference.value_or(0) != 0);
+      CHECK_FALSE(c.source.empty());
+      if (f.space == VolumeSpace::element) continue;  // may be refused, which is part of the answer
+      auto built = build(c.scene, {1});
+      INFO((built ? std::string() : built.error()));
+      CHECK(built.ok());
+    }
+  }
+}
+
+TEST_CASE("a cell with outputs leaves none behind and ends in the same state") {
+  Cell c;
+  c.id = "block";
+  c.scene = block(0.4);
+  const Measured without = measure(c, 1, 0, 1, {});
+  c.outputs = true;
+  const auto count = [] {
+    std::size_t n = 0;
+    for (const auto& entry : fs::directory_iterator(fs::temp_directory_path()))
+      n += entry.path().filename().string().rfind("isochor-", 0) == 0;
+    return n;
+  };
+  const std::size_t before = count();
+  const Measured with = measure(c, 1, 0, 1, {});
+  CHECK(with.good());
+  CHECK(with.hash == without.hash);
+  CHECK(with.fingerprint != without.fingerprint);
+  CHECK(count() <= before);
 }
