@@ -22,9 +22,11 @@ using namespace isochor;
 struct Way {
   const char* name;
   Method method;
+  Solver solver = Solver::automatic;
 };
 constexpr Way kWays[] = {{"automatic", Method::automatic},
                          {"saddle_point", Method::saddle_point},
+                         {"iterative", Method::saddle_point, Solver::iterative},
                          {"condensation", Method::condensation},
                          {"dual_gradients", Method::dual_gradients},
                          {"augmented_gradients", Method::augmented_gradients},
@@ -58,6 +60,7 @@ void block(const Way& way, bool quick, bool one_field, double poisson) {
   WorldOptions options;
   options.scheme = statics();
   options.method = way.method;
+  options.solver = way.solver;
   options.gravity = {0, 0, -9.81};
   World world = must(World::create(options));
   BodyDef def;
@@ -83,6 +86,7 @@ void robot(const Way& way, const char* name) {
   const LibraryScene* scene = find_scene(name);
   SceneDef def = scene->make({});
   def.analysis.method = way.method;
+  def.analysis.solver = way.solver;
   def.analysis.steps = 1;
   auto built = must(build(def));
   const StepReport r = built.world.advance(1);

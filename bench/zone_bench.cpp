@@ -54,6 +54,7 @@ Outcome run(const Base& base, bool zone, bool quick, int threads) {
   WorldOptions options;
   options.scheme = statics();
   options.gravity = {0, 0, -9.81};
+  options.gravity_curve = Curve::ramp(1);
   options.threads = threads;
   World world = must(World::create(options));
   BodyDef def;

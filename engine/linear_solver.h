@@ -39,6 +39,7 @@ struct FactorReport {
   FactorStatus status = FactorStatus::ok;
   Index negative_pivots = -1;        // -1: this backend cannot tell
   std::int64_t factor_nonzeros = 0;  // entries of L
+  double memory = 0;                 // of analyze(): what factors are expected to take [bytes]; 0: not known
   std::string message;               // empty when ok
 };
 
@@ -61,6 +62,7 @@ class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   virtual std::string_view name() const = 0;
+  virtual std::string reason() const { return {}; }  // why this one, where there was a choice
   // Optional knowledge, handed over before analyze(): loops to work with (they outlive the solver), and the
   // displacement unknowns, which come first in the pattern. Direct backends have no use for either.
   virtual void set_parallel(const Parallel& parallel) { (void)parallel; }
@@ -79,9 +81,9 @@ class LinearSolver {
 
 enum class SolverKind : std::uint8_t { automatic, mumps, cholmod, eigen, iterative };
 
-// The backend asked for, or the best one built in for a system of this size. Null when the backend is not
-// part of this build.
-std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, Index size);
+// The backend asked for, or one that chooses among those built in. Null when the backend is not
+// part of this build. `prefer_iterative` is for `automatic`: factors only where iterations have failed.
+std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, bool prefer_iterative = false);
 
 // The backends of this build with their licenses, for `isochor version`.
 struct SolverBackend {

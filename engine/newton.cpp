@@ -213,7 +213,7 @@ double Newton::try_step(const SaddleProblem& p, double tau, std::span<const Vec3
 // three more failures than successes end them for this solve.
 bool Newton::may_venture() const {
   constexpr int most_failures = 3;
-  return !venture_.under_way && venture_.failed < most_failures && !has_gap_ && !any_clamped_ &&
+  return !venture_.under_way && venture_.failed < most_failures && !mended_ && !has_gap_ && !any_clamped_ &&
          !system_->has_lag();
 }
 

@@ -286,8 +286,10 @@ void SaddlePoint::position_gap(const SaddleProblem& p, std::span<const Vec3> x) 
 // that grows out of proportion by the stencils' projected Hessians.
 bool SaddlePoint::factor(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
                          SaddleReport& report) {
+  mended_ = false;
   if (factor_shifted(p.mass_scale, 0, report)) return true;
   if (report.status == SaddleStatus::out_of_memory) return false;
+  mended_ = true;
   // Several bounded rows may ask the same of the same nodes (two obstacles side by side): then their
   // multipliers are not unique, and a trace of compliance picks some. It slows the iteration by as little.
   if (system_->has_bounds() && singular_ && trace_ == 0) {

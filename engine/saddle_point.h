@@ -127,6 +127,7 @@ class SaddlePoint {
   double trace_ = 0;       // of compliance in the matrix, where rows repeat each other
   double mass_scale_ = 0;  // of this solve
   Definiteness definiteness_ = Definiteness::exact;  // of this solve
+  bool mended_ = false;                              // the last factors are not those of the exact matrix
   double shift_ = 0;                                 // the last one that mended the inertia in this solve
   bool has_gap_ = false;                             // given coordinates that are not at their targets yet
   double inertia_energy_ = 0;                        // at the last force residual

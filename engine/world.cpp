@@ -44,7 +44,7 @@ Result<World> World::create(WorldOptions options, std::uint64_t abi) {
     return Error{"world: gravity must be finite numbers"};
   }
   const auto kind = static_cast<SolverKind>(options.solver);
-  if (options.solver != Solver::automatic && !make_linear_solver(kind, 1)) {
+  if (options.solver != Solver::automatic && !make_linear_solver(kind)) {
     return Error{
         "world: the linear solver asked for is not part of this build; `isochor version` lists those that "
         "are"};

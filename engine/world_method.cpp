@@ -8,10 +8,7 @@ namespace isochor {
 
 namespace {
 
-struct Choice {
-  Method method = Method::automatic;
-  std::string reason;
-};
+constexpr std::size_t large_scene = 60000;  // displacements
 
 std::string_view name_of(Method method) {
   switch (method) {
@@ -76,9 +73,14 @@ Result<void> World::Impl::make_method(SystemParts parts) {
         "them; leave consistent_mass off or use another method"};
   }
   parts.treatment = treatment_of(options.method);
+  // Iterations win where matrices are large. They cannot tell an inertia, though, so that equilibria are left
+  // to factors as long as these fit; inertia of mass keeps a step of dynamics away from that.
+  const bool plain = options.method == Method::automatic || options.method == Method::saddle_point;
+  const bool large = 3 * parts.rest.size() >= large_scene && plain && options.solver == Solver::automatic &&
+                     options.scheme->has_inertia() && !follows;
   // Condensed rows make the stiffness as stiff as they are, which is no matter to a factorization but slows
   // an iteration.
-  if (options.method == Method::automatic && options.solver == Solver::iterative)
+  if (options.method == Method::automatic && (large || options.solver == Solver::iterative))
     parts.treatment = RowTreatment::saddle;
   parts.border_wide_rows = !ascent;
   auto compiled_system = System::compile(std::move(parts));
@@ -93,9 +95,8 @@ Result<void> World::Impl::make_method(SystemParts parts) {
     return Error{"world: method position_based has no answer for this scene: " + what +
                  "; use another method"};
   }
-  auto solver = make_linear_solver(static_cast<SolverKind>(options.solver), system->kkt().size);
+  auto solver = make_linear_solver(static_cast<SolverKind>(options.solver), large);
   if (!solver) return Error{"world: this build has no linear solver"};
-  const std::string backend(solver->name());
   if (ascent) {
     DualAscentOptions ascent_options;
     ascent_options.augmented = ascent_options.scaled = options.method == Method::augmented_ascent;
@@ -111,13 +112,15 @@ Result<void> World::Impl::make_method(SystemParts parts) {
   method = std::string(name_of(options.method)) + ": " + std::to_string(system->free_unknowns()) +
            " displacements; rows: " + count(system->kept_rows()) + " in the matrix, " +
            count(system->condensed_rows()) + " condensed, " + count(system->bordered_rows()) + " bordered, " +
-           count(system->dual_rows()) + " dual; " + backend;
+           count(system->dual_rows()) + " dual";
   return {};
 }
 
 std::string World::method() const {
   if (!impl_->compile()) return {};
-  return impl_->method;
+  const LinearSolver& solver = impl_->newton->linear_solver();
+  const std::string why = solver.reason();
+  return impl_->method + "; " + std::string(solver.name()) + (why.empty() ? "" : ", " + why);
 }
 
 }  // namespace isochor

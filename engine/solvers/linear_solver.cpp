@@ -1,6 +1,7 @@
 #include "engine/linear_solver.h"
 
 #include "engine/solvers/cholmod_solver.h"
+#include "engine/solvers/chosen_solver.h"
 #include "engine/solvers/eigen_solver.h"
 #include "engine/solvers/iterative_solver.h"
 #include "engine/solvers/mumps_solver.h"
@@ -12,9 +13,8 @@ namespace isochor {
 // number, so that the last bits do not depend on how many cores there are.
 constexpr int default_blas_threads = 2;
 
-std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, Index size) {
+std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, bool prefer_iterative) {
   if (blas_threads() == 0) set_blas_threads(default_blas_threads);
-  (void)size;
   switch (kind) {
     case SolverKind::mumps:
       return make_mumps_solver();
@@ -27,9 +27,12 @@ std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, Index size) {
     case SolverKind::automatic:
       break;
   }
-  if (auto mumps = make_mumps_solver()) return mumps;
-  if (auto cholmod = make_cholmod_solver()) return cholmod;
-  return make_eigen_solver();
+  auto direct = make_mumps_solver();
+  if (!direct) direct = make_cholmod_solver();
+  if (!direct) direct = make_eigen_solver();
+  ChoiceOptions choice;
+  choice.prefer_iterative = prefer_iterative;
+  return std::make_unique<ChosenSolver>(std::move(direct), make_iterative_solver(), choice);
 }
 
 std::vector<SolverBackend> linear_solver_backends() {

@@ -159,6 +159,7 @@ FactorReport MumpsSolver::analyze_pattern() {
   if (infog(1) < 0) return failure("the analysis");
   FactorReport report;
   report.factor_nonzeros = infog(3) < 0 ? -std::int64_t{infog(3)} * 1000000 : infog(3);
+  report.memory = 1e6 * infog(16);
   return report;
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "studies/analysis.h"
+#include "studies/modes.h"
 #include "studies/problems.h"
 #include "studies/torture.h"
 
@@ -82,10 +83,69 @@ void add_torture(const TortureCase& c, const Flavor& flavor, const Way& way, dou
   }
 }
 
+constexpr const char* kModal[] = {"tet10_node", "edge_node", "tet4_node"};
+constexpr double kStretches[] = {0, 1.5, 0.85};
+
+std::string modes_id(std::string_view name, double stretch) {
+  return "modes/" + std::string(name) + "/" + text(stretch);
+}
+
+void add_modes(bool quick, std::vector<Cell>& out) {
+  for (const char* name : kModal) {
+    for (const double stretch : kStretches) {
+      Cell cell;
+      cell.id = modes_id(name, stretch);
+      cell.labels = {{"formulation", std::string(formulation(name).label)}};
+      cell.knobs = {{"stretch", stretch}};
+      cell.probe = modes_probe(formulation(name), quick ? 4 : 6, stretch);
+      out.push_back(std::move(cell));
+    }
+  }
+}
+
+void show_modes(std::span<const Measured> all, std::vector<Section>& out) {
+  const auto find = [&](const std::string& id) -> const Measured* {
+    for (const Measured& m : all) {
+      if (m.id == id && m.good()) return &m;
+    }
+    return nullptr;
+  };
+  Section s{
+      "Vibrations",
+      "The 30 lowest natural frequencies of a bar, nearly incompressible, over those of Tet10 with linear "
+      "pressure on the same nodes: free at rest (stretch 0), or stretched and compressed with its ends held. "
+      "A spurious mode would be an extra zero, a ratio far below 1, or a shape that changes from node to "
+      "node "
+      "(roughness near 1)."};
+  Table t{
+      "", {"formulation", "stretch", "zero modes", "unstable", "least ratio", "largest", "roughness"}, {}};
+  for (const char* name : kModal) {
+    for (const double stretch : kStretches) {
+      const Measured *m = find(modes_id(name, stretch)), *reference = find(modes_id(kModal[0], stretch));
+      if (m == nullptr || reference == nullptr) continue;
+      double least = 1e300, most = 0;
+      for (int k = 1; k <= 30; ++k) {
+        std::string f = std::to_string(k);
+        f.insert(0, 1, 'f');
+        const double ratio = m->number(f) / reference->number(f);
+        least = std::min(least, ratio);
+        most = std::max(most, ratio);
+      }
+      t.rows.push_back({m->label("formulation"), stretch > 0 ? text(stretch) : "free",
+                        text(m->number("zero modes")), text(m->number("unstable")), text(least), text(most),
+                        text(m->number("rough"))});
+    }
+  }
+  if (t.rows.empty()) return;
+  s.tables.push_back(std::move(t));
+  out.push_back(std::move(s));
+}
+
 // The whole matrix takes hours; --quick a corner of it.
 std::vector<Cell> cells(bool quick) {
   std::vector<Cell> out;
   add_loads(quick, out);
+  add_modes(quick, out);
   for (const TortureCase& c : torture_cases()) {
     if (quick) {
       if (c.name == "bubble" || c.name == "cushion" || c.name == "spin") continue;
@@ -170,7 +230,7 @@ void add_verdicts(std::span<const Measured> all, std::vector<Section>& out) {
 std::vector<Section> present(std::span<const Measured> everything) {
   std::vector<Measured> all;
   for (const Measured& m : everything) {
-    if (m.id.rfind("torture/", 0) != 0) all.push_back(m);
+    if (m.id.rfind("load/", 0) == 0) all.push_back(m);
   }
   Section s{"The whole load in one step",
             "The cantilever at nu = 0.5 under a multiple of gravity, asked for in one increment. "
@@ -202,6 +262,7 @@ std::vector<Section> present(std::span<const Measured> everything) {
   s.tables.push_back(std::move(t));
   std::vector<Section> sections{s};
   add_verdicts(everything, sections);
+  show_modes(everything, sections);
   sections.push_back(all_cells(everything));
   return sections;
 }

@@ -57,7 +57,8 @@ TEST_CASE("wrong types, missing and contradicting values are named") {
   CHECK_THAT(error_with("analysis.duration=-1"), Contains("analysis.duration = -1"));
   CHECK_THAT(error_with("gravity=9.8"), Contains("gravity: expected three numbers"));
   CHECK_THAT(error_with("gravity=[0,\"a\",0]"), Contains("gravity[1]: expected a number"));
-  CHECK_THAT(error_with("bodies[0].mesh={}"), Contains("bodies[0].mesh: \"file\", \"box\" or \"lattice\" is missing"));
+  CHECK_THAT(error_with("bodies[0].mesh={}"),
+             Contains("bodies[0].mesh: \"file\", \"box\" or \"lattice\" is missing"));
   CHECK_THAT(error_with("bodies[0].mesh.file=a.msh"), Contains("both \"file\" and \"box\""));
   CHECK_THAT(error_with("bodies[0].name=7"), Contains("bodies[0].name: expected a text"));
   CHECK_THAT(error_with("bodies=[]"), Contains("bodies is empty"));

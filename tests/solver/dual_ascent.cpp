@@ -39,7 +39,7 @@ Climb inflate(bool moderate, DualAscentOptions ascent) {
   double volume = 0;
   for (const double v : s.row_measure()) volume += v;
   TbbParallel parallel(1);
-  DualAscent method(c.system, parallel, make_linear_solver(SolverKind::automatic, s.kkt().size), ascent);
+  DualAscent method(c.system, parallel, make_linear_solver(SolverKind::automatic), ascent);
   std::vector<Vec3> x = s.parts().rest;
   std::vector<double> lambda(at(s.rows()), 0.0), phi(at(s.rows()));
   ProblemData data(s);

@@ -24,7 +24,7 @@ constexpr Backend kBackends[] = {{SolverKind::mumps, "mumps"},
 template <class Body>
 void for_each_backend(Body body) {
   for (const Backend& b : kBackends) {
-    const auto solver = make_linear_solver(b.kind, 1000);
+    const auto solver = make_linear_solver(b.kind);
     if (!solver) continue;  // not part of this build
     INFO(b.name);
     body(*solver, b.kind);
@@ -211,7 +211,7 @@ TEST_CASE("solvers work side by side in several threads, bit for bit") {
     std::vector<std::thread> threads;
     for (auto& x : results) {
       threads.emplace_back([&] {
-        const auto own = make_linear_solver(kind, 1000);
+        const auto own = make_linear_solver(kind);
         for (int k = 0; k < 5; ++k) {
           if (own->analyze(m.pattern).status == FactorStatus::ok &&
               own->factor(m.values).status == FactorStatus::ok) {
@@ -226,13 +226,13 @@ TEST_CASE("solvers work side by side in several threads, bit for bit") {
 }
 
 TEST_CASE("the process has a fixed number of BLAS threads, whatever the machine") {
-  make_linear_solver(SolverKind::automatic, 10);
+  make_linear_solver(SolverKind::automatic);
   const int before = blas_threads();
   if (before == 0) return;  // a BLAS that cannot be told
   CHECK_FALSE(set_blas_threads(0));
   CHECK(set_blas_threads(1));
   CHECK(blas_threads() == 1);
-  make_linear_solver(SolverKind::automatic, 10);
+  make_linear_solver(SolverKind::automatic);
   CHECK(blas_threads() == 1);  // a choice made is kept
   CHECK(set_blas_threads(before));
 }
