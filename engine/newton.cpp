@@ -7,6 +7,8 @@ namespace isochor {
 
 namespace {
 
+constexpr int most_failed_ventures = 3;
+
 // Where the parabola through the start, its slope and one value has its minimum.
 double parabola_minimum(double tau, double start, double slope, double value) {
   const double curvature = value - start - slope * tau;
@@ -210,11 +212,10 @@ double Newton::try_step(const SaddleProblem& p, double tau, std::span<const Vec3
 // The step at the trial point is taken although the merit refused it: what should turn was stretched on the
 // tangent, stiff parts charge for that, and the next Newton step takes it back (the watchdog technique of
 // Chamberlain, Powell, Lemarechal & Pedersen 1982). Ventures that fail are followed by shorter ones, and
-// three more failures than successes end them for this solve.
+// three more failures than successes, or one that leaves the domain of the energies, end them for this solve.
 bool Newton::may_venture() const {
-  constexpr int most_failures = 3;
-  return !venture_.under_way && venture_.failed < most_failures && !mended_ && !has_gap_ && !any_clamped_ &&
-         !system_->has_lag();
+  return !venture_.under_way && venture_.failed < most_failed_ventures && !mended_ && !has_gap_ &&
+         !any_clamped_ && !system_->has_lag();
 }
 
 void Newton::venture(std::span<const Vec3> x, std::span<const double> lambda, double enough) {
@@ -247,7 +248,8 @@ bool Newton::settle_venture(const SaddleProblem& p, std::span<Vec3> x, std::span
     v.length = std::min(1.0, 1.5 * v.length);
     return true;
   }
-  ++v.failed;
+  // Out of where energies have a value, shorter ones lead there too.
+  v.failed = std::isfinite(value) ? v.failed + 1 : most_failed_ventures;
   v.length *= 0.4;
   std::copy(v.x.begin(), v.x.end(), x.begin());
   std::copy(v.dx.begin(), v.dx.end(), dx_.begin());
