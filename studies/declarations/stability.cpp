@@ -1,6 +1,8 @@
 // How much load a single step takes, and the torture suite.
 #include <algorithm>
 
+#include "scenes/library.h"
+#include "studies/agreement.h"
 #include "studies/analysis.h"
 #include "studies/modes.h"
 #include "studies/problems.h"
@@ -141,11 +143,73 @@ void show_modes(std::span<const Measured> all, std::vector<Section>& out) {
   out.push_back(std::move(s));
 }
 
+// What the library holds that is small enough, in every way that should end at the same place.
+constexpr const char* kCommon[] = {
+    "finger",     "tube",         "cushion",        "bubble",       "spine",
+    "cantilever", "cook",         "cook_plane",     "thick_tube",   "thick_sphere_volume",
+    "torsion",    "cable_finger", "gas_tube",       "two_chambers", "puck",
+    "puck_skin",  "painted_arm",  "squeezed_block", "incline",      "indented_puck"};
+struct SameEnd {
+  std::string_view name;
+  Method method;
+  Solver solver = Solver::automatic;
+};
+constexpr SameEnd kSameEnds[] = {{"automatic", Method::automatic},
+                                 {"condensation", Method::condensation},
+                                 {"dual_gradients", Method::dual_gradients},
+                                 {"augmented_gradients", Method::augmented_gradients},
+                                 {"augmented_ascent", Method::augmented_ascent},
+                                 {"iterative", Method::saddle_point, Solver::iterative}};
+
+void add_agreement(bool quick, std::vector<Cell>& out) {
+  for (const char* name : kCommon) {
+    if (quick && std::string_view(name) != "bubble" && std::string_view(name) != "tube") continue;
+    const LibraryScene* scene = find_scene(name);
+    if (scene == nullptr) continue;
+    for (const SameEnd& way : kSameEnds) {
+      Cell cell;
+      cell.id = "agreement/" + std::string(name) + "/" + std::string(way.name);
+      cell.labels = {{"scene", name}, {"method", std::string(way.name)}};
+      cell.probe = agreement_probe(scene->make({}), way.method, way.solver);
+      out.push_back(std::move(cell));
+    }
+  }
+}
+
+void show_agreement(std::span<const Measured> all, std::vector<Section>& out) {
+  std::vector<Measured> cells;
+  for (const Measured& m : all) {
+    if (m.id.rfind("agreement/", 0) == 0) cells.push_back(m);
+  }
+  if (cells.empty()) return;
+  Section s{
+      "One solution, many ways",
+      "Scenes of the library run to their end: the largest distance of a node from where saddle_point takes "
+      "it, over the size of the body. A dash: the method does not take the scene and says why."};
+  Table t{"", {"scene"}, {}};
+  for (const SameEnd& way : kSameEnds) t.head.emplace_back(way.name);
+  for (const auto& scene : label_values(cells, "scene")) {
+    std::vector<std::string> row{scene};
+    for (const SameEnd& way : kSameEnds) {
+      std::string entry;
+      for (const Measured& m : cells) {
+        if (m.label("scene") != scene || m.label("method") != way.name) continue;
+        entry = !m.good() ? "not converged" : m.number("refused") > 0 ? "–" : text(m.number("distance"), 2);
+      }
+      row.push_back(entry);
+    }
+    t.rows.push_back(std::move(row));
+  }
+  s.tables.push_back(std::move(t));
+  out.push_back(std::move(s));
+}
+
 // The whole matrix takes hours; --quick a corner of it.
 std::vector<Cell> cells(bool quick) {
   std::vector<Cell> out;
   add_loads(quick, out);
   add_modes(quick, out);
+  add_agreement(quick, out);
   for (const TortureCase& c : torture_cases()) {
     if (quick) {
       if (c.name == "bubble" || c.name == "cushion" || c.name == "spin") continue;
@@ -263,6 +327,7 @@ std::vector<Section> present(std::span<const Measured> everything) {
   std::vector<Section> sections{s};
   add_verdicts(everything, sections);
   show_modes(everything, sections);
+  show_agreement(everything, sections);
   sections.push_back(all_cells(everything));
   return sections;
 }

@@ -1,0 +1,77 @@
+#include "studies/agreement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace isochor::studies {
+
+namespace {
+
+struct End {
+  std::vector<std::vector<Vec3>> x;  // of each body
+  std::vector<double> length;
+  int iterations = 0;
+  std::string refused;
+};
+
+Result<End> run(SceneDef scene, Method method, Solver solver, int threads) {
+  scene.analysis.method = method;
+  scene.analysis.solver = solver;
+  End end;
+  auto built = build(scene, {threads});
+  if (!built) return Error{built.error()};
+  World& world = built.value().world;
+  if (const auto compiled = world.compile(); !compiled) {
+    end.refused = compiled.error();
+    return end;
+  }
+  const StepPlan plan = plan_steps(scene.analysis);
+  for (int step = 0; step < plan.steps; ++step) {
+    const StepReport report = world.advance(plan.h);
+    if (report.status != StepStatus::converged) return Error{report.reason};
+    end.iterations += report.iterations;
+  }
+  for (const BodyId body : built.value().bodies) {
+    const auto x = world.positions(body);
+    const auto rest = world.rest_positions(body);
+    end.x.emplace_back(x.begin(), x.end());
+    Vec3 lower = rest[0], upper = rest[0];
+    for (const Vec3& p : rest) {
+      for (int a = 0; a < 3; ++a) {
+        lower[a] = std::min(lower[a], p[a]);
+        upper[a] = std::max(upper[a], p[a]);
+      }
+    }
+    const Vec3 d = upper - lower;
+    end.length.push_back(std::sqrt(dot(d, d)));
+  }
+  return end;
+}
+
+}  // namespace
+
+Probe agreement_probe(const SceneDef& scene, Method method, Solver solver) {
+  return [scene, method, solver](const SceneDef&, int threads) -> Result<Numbers> {
+    auto one = run(scene, method, solver, threads);
+    if (!one) return Error{one.error()};
+    if (!one.value().refused.empty()) return Numbers{{"refused", 1}};
+    auto other = run(scene, Method::saddle_point, Solver::automatic, threads);
+    if (!other) return Error{other.error()};
+    const End &a = one.value(), &b = other.value();
+    double most = 0;
+    for (std::size_t k = 0; k < a.x.size(); ++k) {
+      for (std::size_t i = 0; i < a.x[k].size(); ++i) {
+        const Vec3 d = a.x[k][i] - b.x[k][i];
+        most = std::max(most, std::sqrt(dot(d, d)) / a.length[k]);
+      }
+    }
+    return Numbers{{"distance", most},
+                   {"iterations", a.iterations},
+                   {"reference iterations", b.iterations},
+                   {"refused", 0}};
+  };
+}
+
+}  // namespace isochor::studies
