@@ -25,7 +25,7 @@ struct RunArguments {
   std::string folder;  // empty: out/NAME
   int threads = 0;
   std::optional<double> budget;
-  bool quiet = false, json = false, explain = false;
+  bool quiet = false, json = false, explain = false, accuracy = false;
 };
 
 // Tables of `run --explain`, after the run.

@@ -31,6 +31,8 @@ void add_run(CLI::App& top, app::RunArguments& a) {
   c->add_flag("--quiet", a.quiet, "Print errors only");
   c->add_flag("--json", a.json, "Print the summary as JSON instead of tables");
   c->add_flag("--explain", a.explain, "Say which effects are on, why, and their share of time and memory");
+  c->add_flag("--accuracy", a.accuracy,
+              "Run once more with something better and say what every metric and probe is worth");
   c->footer(kRunFooter);
 }
 

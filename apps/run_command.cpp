@@ -4,10 +4,13 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 
 #include "apps/commands.h"
 #include "apps/table.h"
+#include "scenes/accuracy.h"
 #include "scenes/library.h"
+#include "scenes/outputs.h"
 #include "scenes/run.h"
 #include "scenes/scene_file.h"
 
@@ -103,6 +106,24 @@ void print_summary(const RunResult& r, const std::string& folder) {
               r.scene.c_str());
 }
 
+void print_accuracy(const Accuracy& a) {
+  if (!a.reason.empty()) {
+    std::fprintf(stderr, "isochor: --accuracy: %s\n", a.reason.c_str());
+    return;
+  }
+  const bool limit = a.comparison == Comparison::worse_element;
+  Table table(
+      {"what it is worth", "value", "unit", limit ? "error at most about" : "error about", "", "compared"});
+  table.numbers_from(1, 1);
+  for (const AccuracyEntry& e : a.entries) {
+    table.add({e.name, number(e.value, 6), e.unit, number(e.indicator, 2),
+               e.relative ? number(100 * *e.relative, 2) + " %" : "", number(e.other, 6)});
+  }
+  std::printf(
+      "\n%s  compared with %s; %.2f s. Without the errors of time steps and of the shape of the mesh.\n",
+      table.text("  ").c_str(), a.how.c_str(), a.seconds);
+}
+
 int exit_code(RunStatus status) {
   switch (status) {
     case RunStatus::converged:
@@ -153,8 +174,18 @@ int run(const RunArguments& a) {
     std::fprintf(stderr, "isochor: %s\n", result.reason.c_str());
     return bad_input;
   }
-  if (a.json) std::fputs(summary_json(result).c_str(), stdout);
+  std::optional<Accuracy> accuracy;
+  if (a.accuracy) {
+    accuracy = estimate_accuracy(scene.value(), result, options);
+    const std::string summary = summary_json(result, *accuracy);
+    if (auto r = write_text((std::filesystem::path(options.folder) / "summary.json").string(), summary); !r)
+      std::fprintf(stderr, "isochor: --accuracy: %s\n", r.error().c_str());
+    if (a.json) std::fputs(summary.c_str(), stdout);
+  } else if (a.json) {
+    std::fputs(summary_json(result).c_str(), stdout);
+  }
   if (tables) print_summary(result, options.folder);
+  if (accuracy && (tables || !accuracy->reason.empty())) print_accuracy(*accuracy);
   if (a.explain) {
     const auto explanation = explain(scene.value());
     if (explanation)

@@ -48,6 +48,25 @@ class DistanceRows final : public RowPool {
   std::string name_;
 };
 
+// Unit vector about which A0 has been turned into A; any where it has not. Half a turn leaves its sign open.
+Vec3 turn_axis(const Mat3& A, const Mat3& A0) {
+  Mat3 R;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) R(i, j) = A(i, 0) * A0(j, 0) + A(i, 1) * A0(j, 1) + A(i, 2) * A0(j, 2);
+  }
+  Vec3 axis{R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1)};
+  const double trace = R(0, 0) + R(1, 1) + R(2, 2);
+  // Near half a turn the antisymmetric part vanishes, and R + 1 is twice the axis times itself.
+  if (trace < -0.999) {
+    int k = 0;
+    for (int i = 1; i < 3; ++i) k = R(i, i) > R(k, k) ? i : k;
+    const Vec3 column{R(0, k) + (k == 0), R(1, k) + (k == 1), R(2, k) + (k == 2)};
+    axis = dot(column, axis) < 0 ? -1.0 * column : column;
+  }
+  const double length = std::sqrt(dot(axis, axis));
+  return length > 0 ? (1 / length) * axis : Vec3{};
+}
+
 class RigidBodyInstance final : public EffectInstance {
  public:
   RigidBodyInstance(std::string name, const ControlPoints& points)
@@ -68,6 +87,10 @@ class RigidBodyInstance final : public EffectInstance {
     for (std::size_t k = 0; k < 9; ++k) trace += A.m[k] * A0.m[k];
     const double angle = std::acos(std::min(1.0, std::max(-1.0, 0.5 * (trace - 1))));
     out.push_back({name_, "rigid_body", "turn", "rad", angle});
+    const Vec3 turn = angle * turn_axis(A, A0);
+    out.push_back({name_, "rigid_body", "turn_x", "rad", turn.x});
+    out.push_back({name_, "rigid_body", "turn_y", "rad", turn.y});
+    out.push_back({name_, "rigid_body", "turn_z", "rad", turn.z});
   }
 
  private:

@@ -167,25 +167,31 @@ std::unique_ptr<RunPage> RunPage::start(const RunView& view) {
   if (!results_page_available()) return nullptr;
   PageScene scene;
   std::vector<Vertices> vertices;
+  std::vector<std::vector<Index>> triangle_cell(view.built.bodies.size());
   for (std::size_t b = 0; b < view.built.bodies.size(); ++b) {
     PagePart part;
     part.name = view.scene.bodies[b].name;
     const Mesh& mesh = view.built.world.mesh(view.built.bodies[b]);
     const DisplaySurface& surface = view.built.surfaces[b];
+    PageMeshOptions options;
+    options.triangle_cell = &triangle_cell[b];
     if (surface.points.empty())
-      vertices.push_back({add_page_mesh(scene, mesh, part), {}});
+      vertices.push_back({add_page_mesh(scene, mesh, part, options), {}});
     else
       vertices.push_back({{}, add_page_surface(scene, mesh, surface, part)});
   }
   scene.fields = page_fields();
   scene.probes = view.result.probes;
   scene.up = up_axis(view.scene);
+  RunOverlays overlays;
+  overlays.start(view, scene, triangle_cell);
   auto recorder = ResultsRecorder::start(std::move(scene));
   if (!recorder) {
     view.result.warnings.push_back("no results page: " + recorder.error());
     return nullptr;
   }
-  return std::unique_ptr<RunPage>(new RunPage(std::move(recorder).value(), std::move(vertices)));
+  return std::unique_ptr<RunPage>(
+      new RunPage(std::move(recorder).value(), std::move(vertices), std::move(overlays)));
 }
 
 void RunPage::append(const RunView& view, const std::vector<BodyFields>& fields) {
@@ -218,6 +224,7 @@ void RunPage::append(const RunView& view, const std::vector<BodyFields>& fields)
       add(of(x), of(rest), of(pressure), of(von_mises), of(J));
     }
   }
+  overlays_.append(view, frame);
   const auto& displacement = view.result.records.back().probes;
   for (std::size_t p = 0; p < displacement.size(); ++p) {
     frame.probes.push_back(view.scene.probes[p].point + displacement[p]);

@@ -7,6 +7,7 @@
 
 #include "results_page.h"
 #include "scenes/outputs.h"
+#include "scenes/run_overlays.h"
 
 namespace isochor {
 
@@ -23,11 +24,12 @@ class RunPage {
     std::vector<Index> nodes;
     std::vector<EmbeddedPoint> points;
   };
-  RunPage(ResultsRecorder recorder, std::vector<Vertices> vertices)
-      : recorder_(std::move(recorder)), vertices_(std::move(vertices)) {}
+  RunPage(ResultsRecorder recorder, std::vector<Vertices> vertices, RunOverlays overlays)
+      : recorder_(std::move(recorder)), vertices_(std::move(vertices)), overlays_(std::move(overlays)) {}
 
   ResultsRecorder recorder_;
   std::vector<Vertices> vertices_;  // by body
+  RunOverlays overlays_;
   std::string failure_;
 };
 

@@ -131,13 +131,19 @@ std::vector<Index> add_page_mesh(PageScene& scene, const Mesh& mesh, const PageP
   };
   const bool quadratic = mesh.cell_type == CellType::tet10, hexahedral = mesh.cell_type == CellType::hex8;
   const std::size_t stride = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
+  const auto owned = [&](Index cell, std::size_t from) {
+    if (options.triangle_cell)
+      options.triangle_cell->insert(options.triangle_cell->end(), scene.triangles.size() / 3 - from, cell);
+  };
   for (const Face& face : boundary_faces(mesh)) {
+    const std::size_t before = scene.triangles.size() / 3;
     const Index* nodes = &mesh.cells[static_cast<std::size_t>(face.cell) * stride];
     if (hexahedral) {
       const auto& c = hex_faces[static_cast<std::size_t>(face.side)];
       // The diagonal is no mesh edge.
       triangle(nodes[c[0]], nodes[c[1]], nodes[c[2]], 0b011);
       triangle(nodes[c[0]], nodes[c[2]], nodes[c[3]], 0b110);
+      owned(face.cell, before);
       continue;
     }
     const TetFace& local = tet_faces[static_cast<std::size_t>(face.side)];
@@ -145,6 +151,7 @@ std::vector<Index> add_page_mesh(PageScene& scene, const Mesh& mesh, const PageP
     const auto middle = [&](std::size_t k) { return nodes[local.middle[k]]; };
     if (!quadratic) {
       triangle(corner(0), corner(1), corner(2), 7);
+      owned(face.cell, before);
       continue;
     }
     // Bit k stands for the edge that leaves corner k: the edges between mid nodes are no mesh edges.
@@ -152,6 +159,7 @@ std::vector<Index> add_page_mesh(PageScene& scene, const Mesh& mesh, const PageP
     triangle(corner(1), middle(1), middle(0), 0b101);
     triangle(corner(2), middle(2), middle(1), 0b101);
     triangle(middle(0), middle(1), middle(2), 0);
+    owned(face.cell, before);
   }
 
   if (options.cells) {

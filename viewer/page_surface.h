@@ -10,6 +10,7 @@ namespace isochor {
 
 struct PageMeshOptions {
   bool cells = true;  // keep the inside, so that sections show the field there (about doubles the page)
+  std::vector<Index>* triangle_cell = nullptr;  // where given: the cell of each triangle added
 };
 
 // Adds the boundary of the mesh to the scene as one part, oriented outward; regions become categories only if

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "scenes/accuracy.h"
 #include "scenes/run.h"
 
 namespace isochor {
@@ -58,9 +59,7 @@ void add_state(Json& j, const RunResult& r) {
   }
 }
 
-}  // namespace
-
-std::string summary_json(const RunResult& r) {
+Json summary(const RunResult& r) {
   Json j;
   j["status"] = to_string(r.status);
   j["reason"] = r.reason;
@@ -85,7 +84,37 @@ std::string summary_json(const RunResult& r) {
   j["build"] = build_description();
   j["machine"] = machine_description();
   j["threads"] = r.threads;
+  return j;
+}
+
+std::string dump(const Json& j) {
   return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string summary_json(const RunResult& r) {
+  return dump(summary(r));
+}
+
+std::string summary_json(const RunResult& r, const Accuracy& accuracy) {
+  Json j = summary(r);
+  Json& a = j["accuracy"];
+  a["compared_with"] = accuracy.how;
+  a["upper_limit"] = accuracy.comparison == Comparison::worse_element;
+  a["reason"] = accuracy.reason;
+  a["wall_s"] = accuracy.seconds;
+  a["indicators"] = Json::array();
+  for (const AccuracyEntry& e : accuracy.entries) {
+    Json entry{{"name", e.name},
+               {"value", e.value},
+               {"unit", e.unit},
+               {"compared", e.other},
+               {"error", e.indicator}};
+    if (e.relative) entry["relative"] = *e.relative;
+    a["indicators"].push_back(entry);
+  }
+  return dump(j);
 }
 
 std::string version() {

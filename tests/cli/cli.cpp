@@ -111,6 +111,17 @@ TEST_CASE("a run explains what it was made of") {
                         Contains("traction \"pull\""));
 }
 
+TEST_CASE("a run says what its answers are worth") {
+  Shell shell;
+  shell.write("block.json", kBlock);
+  const Outcome o = shell.run("run block.json --out here --accuracy");
+  CHECK(o.code == 0);
+  CHECK_THAT(o.out, Contains("error about") && Contains("compared with the same mesh"));
+  const Json j = Json::parse(slurp(shell.folder() / "here/summary.json"));
+  CHECK_FALSE(j["accuracy"]["indicators"].empty());
+  CHECK(Json::parse(shell.run("run block.json --accuracy --json").out)["accuracy"]["reason"] == "");
+}
+
 TEST_CASE("a scene file runs and writes where it is told") {
   Shell shell;
   shell.write("block.json", kBlock);

@@ -1,0 +1,325 @@
+#include "scenes/run_overlays.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "constraints/obstacle_shape.h"
+
+namespace isochor {
+
+namespace {
+
+constexpr int kAround = 32, kAlong = 12;
+
+struct Triangles {
+  std::vector<Vec3> points;
+  std::vector<Index> corners;
+  // A closed ribbon between two rings of the same size.
+  void ribbon(Index a, Index b) {
+    for (Index k = 0; k < kAround; ++k) {
+      const Index n = (k + 1) % kAround;
+      corners.insert(corners.end(), {a + k, a + n, b + k, a + n, b + n, b + k});
+    }
+  }
+  Index ring(double radius, double z) {
+    const auto first = static_cast<Index>(points.size());
+    for (int k = 0; k < kAround; ++k) {
+      const double angle = 2 * std::numbers::pi * k / kAround;
+      points.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+    }
+    return first;
+  }
+  void cap(Index ring, double z, bool up) {
+    const auto middle = static_cast<Index>(points.size());
+    points.push_back({0, 0, z});
+    for (Index k = 0; k < kAround; ++k) {
+      const Index a = ring + k, b = ring + (k + 1) % kAround;
+      if (up)
+        corners.insert(corners.end(), {middle, a, b});
+      else
+        corners.insert(corners.end(), {middle, b, a});
+    }
+  }
+};
+
+// Rings from the lower to the upper pole; the middle of a capsule is straight.
+Triangles round_shape(double radius, double straight) {
+  Triangles t;
+  Index last = -1;
+  for (int half = 0; half < 2; ++half) {
+    for (int k = 0; k <= kAlong / 2; ++k) {
+      const double angle = 0.5 * std::numbers::pi * (half == 0 ? 2.0 * k / kAlong - 1 : 2.0 * k / kAlong);
+      const double shift = (half == 0 ? -0.5 : 0.5) * straight;
+      const Index ring = t.ring(radius * std::cos(angle), shift + radius * std::sin(angle));
+      if (last >= 0) t.ribbon(last, ring);
+      last = ring;
+    }
+  }
+  return t;
+}
+
+// Rounded edges are drawn sharp; a plane as a square of this size.
+Triangles triangles_of(const Obstacle& o, double size) {
+  Triangles t;
+  switch (o.shape) {
+    case ObstacleShape::plane:
+      t.points = {{-size, -size, 0}, {size, -size, 0}, {size, size, 0}, {-size, size, 0}};
+      t.corners = {0, 1, 2, 0, 2, 3};
+      break;
+    case ObstacleShape::sphere:
+      return round_shape(o.radius, 0);
+    case ObstacleShape::capsule:
+      return round_shape(o.radius, o.length);
+    case ObstacleShape::cylinder: {
+      const Index low = t.ring(o.radius, -0.5 * o.length), high = t.ring(o.radius, 0.5 * o.length);
+      t.ribbon(low, high);
+      t.cap(low, -0.5 * o.length, false);
+      t.cap(high, 0.5 * o.length, true);
+      break;
+    }
+    case ObstacleShape::box:
+      for (int k = 0; k < 8; ++k)
+        t.points.push_back({(k & 1 ? 0.5 : -0.5) * o.size.x, (k & 2 ? 0.5 : -0.5) * o.size.y,
+                            (k & 4 ? 0.5 : -0.5) * o.size.z});
+      t.corners = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                   2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
+      break;
+  }
+  return t;
+}
+
+double gauge(const StepRecord& record, const std::string& effect, const char* quantity) {
+  for (const Gauge& g : record.gauges) {
+    if (g.effect == effect && g.kind == "rigid_body" && g.quantity == quantity) return g.value;
+  }
+  return 0;
+}
+
+// Turned about an axis, length of `turn` in radians (Rodrigues).
+Vec3 turned(const Vec3& v, const Vec3& turn) {
+  const double angle = std::sqrt(dot(turn, turn));
+  if (!(angle > 0)) return v;
+  const Vec3 a = (1 / angle) * turn;
+  const Vec3 across{a.y * v.z - a.z * v.y, a.z * v.x - a.x * v.z, a.x * v.y - a.y * v.x};
+  return std::cos(angle) * v + std::sin(angle) * across + (1 - std::cos(angle)) * dot(a, v) * a;
+}
+
+// Where a solid is: a pose, and of a free one how it has turned from there.
+struct Place {
+  ObstaclePose pose;
+  Vec3 turn{};
+  bool free = false;
+  Vec3 to_world(const Vec3& y) const { return pose.position + turned(pose.R * y, turn); }
+  Vec3 to_own(const Vec3& x) const {
+    return transposed_times(pose.R, turned(x - pose.position, -1.0 * turn));
+  }
+};
+
+Place place_of(const Obstacle& shape, const std::string& rigid, const StepRecord& record) {
+  if (rigid.empty()) return {pose_of(shape, record.time), {}, false};
+  Place p{pose_of(shape, 0), {}, true};
+  p.pose.position = {gauge(record, rigid, "x"), gauge(record, rigid, "y"), gauge(record, rigid, "z")};
+  p.turn = {gauge(record, rigid, "turn_x"), gauge(record, rigid, "turn_y"), gauge(record, rigid, "turn_z")};
+  return p;
+}
+
+// What a contact touches: its own obstacle, or a free rigid body.
+std::pair<const Obstacle*, std::string> touched(const SceneDef& scene, const ContactDef& c) {
+  for (const RigidBodyDef& r : scene.rigid_bodies) {
+    if (!c.against.empty() && r.name == c.against) return {&r.shape, r.name};
+  }
+  return {&c.obstacle, ""};
+}
+
+// Nodes of the surfaces named; of the whole mesh where none is (what is inside is not near an obstacle).
+std::vector<Index> contact_nodes(const Mesh& mesh, const std::vector<std::string>& surfaces) {
+  std::vector<Index> nodes;
+  for (const MeshSurface& s : mesh.surfaces) {
+    if (std::find(surfaces.begin(), surfaces.end(), s.name) != surfaces.end())
+      nodes.insert(nodes.end(), s.faces.begin(), s.faces.end());
+  }
+  if (surfaces.empty()) nodes = mesh.cells;
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+Vec3 center_of(const Mesh& mesh, Index cell) {
+  const auto stride = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
+  const std::size_t corners = mesh.cell_type == CellType::hex8 ? 8 : 4;
+  Vec3 sum{};
+  for (std::size_t k = 0; k < corners; ++k)
+    sum += mesh.nodes[static_cast<std::size_t>(mesh.cells[static_cast<std::size_t>(cell) * stride + k])];
+  return (1.0 / static_cast<double>(corners)) * sum;
+}
+
+std::string region_of(const Mesh& mesh, Index cell) {
+  const auto region = mesh.cell_region.empty()
+                          ? std::size_t{0}
+                          : static_cast<std::size_t>(mesh.cell_region[static_cast<std::size_t>(cell)]);
+  return region < mesh.regions.size() ? mesh.regions[region] : std::string();
+}
+
+bool holds(const VolumeZone& zone, const Mesh& mesh, Index cell) {
+  if (std::find(zone.cells.begin(), zone.cells.end(), cell) != zone.cells.end()) return true;
+  const std::string region = region_of(mesh, cell);
+  if (std::find(zone.regions.begin(), zone.regions.end(), region) != zone.regions.end()) return true;
+  const Vec3 c = center_of(mesh, cell);
+  return std::any_of(zone.boxes.begin(), zone.boxes.end(), [&](const std::array<Vec3, 2>& b) {
+    return c.x >= b[0].x && c.y >= b[0].y && c.z >= b[0].z && c.x <= b[1].x && c.y <= b[1].y && c.z <= b[1].z;
+  });
+}
+
+std::size_t number_of(std::vector<std::string>& names, const std::string& name) {
+  const auto it = std::find(names.begin(), names.end(), name);
+  if (it != names.end()) return static_cast<std::size_t>(it - names.begin());
+  names.push_back(name);
+  return names.size() - 1;
+}
+
+}  // namespace
+
+void RunOverlays::add_solid(const Obstacle& shape, const std::string& name, const std::string& rigid,
+                            PageScene& scene) {
+  Solid solid{&shape, rigid, {}};
+  // A plane lies below the bodies, wherever its own origin is.
+  Triangles t = triangles_of(shape, 0.75 * extent_);
+  if (shape.shape == ObstacleShape::plane) {
+    Vec3 shift = pose_of(shape, 0).to_own(middle_);
+    shift.z = 0;
+    for (Vec3& p : t.points) p = p + shift;
+  }
+  const auto first = static_cast<Index>(scene.rest.size()), part = static_cast<Index>(scene.parts.size());
+  PagePart obstacle;
+  obstacle.name = name;
+  obstacle.obstacle = true;
+  scene.parts.push_back(obstacle);
+  const ObstaclePose pose = pose_of(shape, 0);
+  for (const Vec3& p : t.points) scene.rest.push_back(pose.to_world(p));
+  for (const Index k : t.corners) scene.triangles.push_back(first + k);
+  scene.triangle_part.resize(scene.triangles.size() / 3, part);
+  scene.triangle_edges.resize(scene.triangles.size() / 3, 0);
+  solid.points = std::move(t.points);
+  solids_.push_back(std::move(solid));
+}
+
+void RunOverlays::add_path(const RunView& view, BodyId body, const std::vector<Vec3>& points,
+                           PageScene& scene, const std::string& name, std::optional<Vec3> from,
+                           std::optional<Vec3> to) {
+  Path path;
+  path.body = static_cast<std::size_t>(body);
+  path.from = from;
+  path.to = to;
+  const Mesh& mesh = view.built.world.mesh(view.built.bodies[path.body]);
+  for (const Vec3& p : points) path.points.push_back(locate(mesh, p));
+  PageLine line;
+  line.name = name;
+  scene.lines.push_back(line);
+  paths_.push_back(std::move(path));
+}
+
+void RunOverlays::add_maps(const RunView& view, PageScene& scene,
+                           const std::vector<std::vector<Index>>& triangle_cell) {
+  const std::size_t triangles = scene.triangles.size() / 3;
+  std::vector<std::string> regions, zones;
+  std::vector<double> region_map(triangles, 0), zone_map(triangles, 0);
+  if (view.scene.volumes) {
+    for (const VolumeRows& rows : *view.scene.volumes) {
+      if (rows.def.space == VolumeSpace::zone && zones.empty()) zones.emplace_back("no zone");
+    }
+  }
+  std::size_t triangle = 0;
+  for (std::size_t b = 0; b < triangle_cell.size(); ++b) {
+    // A surface of its own has no cells to ask; its body stays without a map, and so do all.
+    if (triangle_cell[b].empty()) return;
+    const Mesh& mesh = view.built.world.mesh(view.built.bodies[b]);
+    for (const Index cell : triangle_cell[b]) {
+      std::string region = region_of(mesh, cell);
+      if (triangle_cell.size() > 1) region = view.scene.bodies[b].name + ": " + region;
+      region_map[triangle] = static_cast<double>(number_of(regions, region));
+      if (!zones.empty()) {
+        for (const VolumeRows& rows : *view.scene.volumes) {
+          if (rows.def.space != VolumeSpace::zone || static_cast<std::size_t>(rows.def.body) != b) continue;
+          for (const VolumeZone& zone : rows.def.zones) {
+            // Of zones that overlap, the first.
+            if (zone_map[triangle] > 0 || !holds(zone, mesh, cell)) continue;
+            zone_map[triangle] = static_cast<double>(number_of(zones, zone.name));
+          }
+        }
+      }
+      ++triangle;
+    }
+  }
+  const auto add = [&](const char* name, const char* label, const std::vector<std::string>& names,
+                       std::vector<double> map) {
+    if (names.size() < 2) return;
+    PageField field;
+    field.name = name;
+    field.label = label;
+    field.per_triangle = true;
+    field.categories = names;
+    scene.fields.push_back(field);
+    maps_.push_back(std::move(map));
+  };
+  add("region", "Regions", regions, std::move(region_map));
+  add("zone", "Volume zones", zones, std::move(zone_map));
+}
+
+void RunOverlays::start(const RunView& view, PageScene& scene,
+                        const std::vector<std::vector<Index>>& triangle_cell) {
+  Vec3 low = scene.rest.empty() ? Vec3{} : scene.rest.front(), high = low;
+  for (const Vec3& p : scene.rest) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  middle_ = 0.5 * (low + high);
+  extent_ = std::sqrt(dot(high - low, high - low));
+  const SceneDef& s = view.scene;
+  for (const RigidBodyDef& r : s.rigid_bodies) add_solid(r.shape, r.name, r.name, scene);
+  for (const ContactDef& c : s.contacts) {
+    if (c.against.empty()) add_solid(c.obstacle, c.name, "", scene);
+  }
+  for (const CableDef& c : s.cables) add_path(view, c.body, c.points, scene, c.name, c.from, c.to);
+  for (const WindingDef& w : s.windings) {
+    for (const auto& path : w.paths) add_path(view, w.body, path, scene, w.name, {}, {});
+  }
+  add_maps(view, scene, triangle_cell);
+}
+
+void RunOverlays::append(const RunView& view, PageFrame& frame) const {
+  const StepRecord& record = view.result.records.back();
+  const World& world = view.built.world;
+  for (const Solid& solid : solids_) {
+    const Place place = place_of(*solid.shape, solid.rigid, record);
+    for (const Vec3& y : solid.points) {
+      frame.positions.push_back(place.to_world(y));
+      for (auto& field : frame.fields) field.push_back(0);
+    }
+  }
+  for (const auto& map : maps_) frame.fields.push_back(map);
+  for (const Path& path : paths_) {
+    const auto x = world.positions(view.built.bodies[path.body]);
+    std::vector<Vec3> points;
+    if (path.from) points.push_back(*path.from);
+    for (const MaterialPoint& p : path.points) points.push_back(p.at(x));
+    if (path.to) points.push_back(*path.to);
+    frame.lines.push_back(std::move(points));
+  }
+  // Hard contacts meet their obstacle to the tolerance of the rows, soft ones sink into it.
+  const double touching = 1e-5 * extent_;
+  for (const ContactDef& c : view.scene.contacts) {
+    if (!c.rigid.empty()) continue;
+    const auto [shape, rigid] = touched(view.scene, c);
+    const Place place = place_of(*shape, rigid, record);
+    const BodyId id = view.built.bodies[static_cast<std::size_t>(c.body)];
+    const auto x = world.positions(id);
+    for (const Index n : contact_nodes(world.mesh(id), c.surfaces)) {
+      const Vec3& p = x[static_cast<std::size_t>(n)];
+      if (distance_value(*shape, place.to_own(p)) <= touching) frame.contacts.push_back(p);
+    }
+  }
+}
+
+}  // namespace isochor

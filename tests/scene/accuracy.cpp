@@ -1,0 +1,113 @@
+// The indicator for scenes without a reference, on scenes that have one.
+#include "scenes/accuracy.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "catch.h"
+#include "scenes/library.h"
+#include "small_scene.h"
+
+using namespace isochor;
+
+namespace {
+
+// Indicator over true error of the first metric.
+double ratio(const SceneDef& scene) {
+  const RunResult r = run_scene(scene, {});
+  REQUIRE(r.status == RunStatus::converged);
+  const Accuracy a = estimate_accuracy(scene, r);
+  INFO(a.reason);
+  REQUIRE_FALSE(a.entries.empty());
+  for (const MetricValue& m : r.metrics) {
+    if (m.def.name != a.entries[0].name) continue;
+    const double error = std::abs(m.value - *m.def.reference);
+    CAPTURE(scene.name, m.def.name, m.value, a.entries[0].indicator, error);
+    CHECK(a.entries[0].relative.value() > 0);
+    return a.entries[0].indicator / error;
+  }
+  FAIL("the metric is gone");
+  return 0;
+}
+
+SceneDef beam(Element element, std::array<int, 3> divisions) {
+  SceneVariant v;
+  v.element = element;
+  SceneDef s = cantilever_tenth(v);
+  auto& box = std::get<BoxMeshDef>(s.bodies[0].mesh);
+  box.divisions = divisions;
+  if (element == Element::hex8) box.cell_type = CellType::hex8;
+  // Of the two, the one with the better known reference.
+  s.metrics.erase(s.metrics.begin());
+  return s;
+}
+
+SceneDef panel(Element element, const char* mesh) {
+  SceneVariant v;
+  v.element = element;
+  v.mesh = mesh;
+  return cook(v);
+}
+
+}  // namespace
+
+TEST_CASE("the indicator is within a factor of three of the true error") {
+  const SceneDef scenes[] = {beam(Element::tet4, {10, 1, 1}),
+                             beam(Element::tet4, {20, 2, 2}),
+                             beam(Element::tet4_edge_smoothed, {20, 2, 2}),
+                             beam(Element::tet10, {5, 1, 1}),
+                             beam(Element::hex8, {20, 2, 2}),
+                             panel(Element::tet4, "cook3d_1"),
+                             panel(Element::tet4_edge_smoothed, "cook3d_1")};
+  for (const SceneDef& scene : scenes) {
+    const double r = ratio(scene);
+    CHECK(r > 1.0 / 3);
+    CHECK(r < 3);
+  }
+}
+
+TEST_CASE("a quadratic mesh file has an upper limit or a reason") {
+  SceneDef on_tet4 = panel(Element::tet10, "cook3d_1");
+  const auto compared = compared_scene(on_tet4);
+  REQUIRE(compared.ok());
+  CHECK(compared.value().comparison == Comparison::worse_element);
+  CHECK(ratio(on_tet4) > 1);
+  // Its cells are quadratic: no linear element takes them.
+  const SceneDef on_tet10 = panel(Element::tet10, "cook3d_1_tet10");
+  const RunResult r = run_scene(on_tet10, {});
+  const Accuracy a = estimate_accuracy(on_tet10, r);
+  CHECK(a.entries.empty());
+  CHECK_THAT(a.reason, Catch::Matchers::Contains("no indicator"));
+}
+
+TEST_CASE("scenes without anything better, or without an answer, have a reason") {
+  SceneVariant v;
+  v.element = Element::hex8;
+  v.mesh = "cook3d_1_hex";
+  CHECK_FALSE(compared_scene(cook(v)).ok());
+  RunResult failed;
+  failed.status = RunStatus::not_converged;
+  const Accuracy a = estimate_accuracy(test::small_scene(), failed);
+  CHECK_THAT(a.reason, Catch::Matchers::Contains("did not converge"));
+  const auto j = nlohmann::json::parse(summary_json(failed, a));
+  CHECK(j["accuracy"]["reason"] == a.reason);
+  CHECK(j["accuracy"]["indicators"].empty());
+}
+
+TEST_CASE("indicators cover metrics and probes, not residuals") {
+  SceneDef scene = test::small_scene();
+  MetricDef residual;
+  residual.name = "volume error";
+  residual.quantity = Quantity::volume_error;
+  scene.metrics.push_back(residual);
+  const RunResult r = run_scene(scene, {});
+  const Accuracy a = estimate_accuracy(scene, r);
+  REQUIRE(a.entries.size() == 2);
+  CHECK(a.entries[0].name == "pulled");
+  CHECK(a.entries[1].name == "probe tip");
+  CHECK(a.entries[0].indicator == Approx(std::abs(a.entries[0].value - a.entries[0].other)));
+  const auto j = nlohmann::json::parse(summary_json(r, a));
+  CHECK(j["accuracy"]["indicators"].size() == 2);
+  CHECK(j["accuracy"]["upper_limit"] == false);
+  CHECK(j["status"] == "converged");
+}

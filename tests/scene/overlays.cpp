@@ -1,0 +1,165 @@
+// What the results page shows beside the bodies.
+#include <algorithm>
+#include <cmath>
+
+#include "catch.h"
+#include "page_surface.h"
+#include "scenes/library.h"
+#include "scenes/run_overlays.h"
+#include "small_scene.h"
+
+using namespace isochor;
+
+namespace {
+
+// A block of two regions that stands on a plane, pressed down by its weight, with a cable and a free ball
+// above.
+SceneDef block() {
+  SceneDef s = test::small_scene();
+  auto& box = std::get<BoxMeshDef>(s.bodies[0].mesh);
+  box.lower = {0, 0, 0};
+  box.upper = {1, 1, 1};
+  box.divisions = {2, 2, 2};
+  s.tractions.clear();
+  s.dirichlet.clear();
+  s.metrics.clear();
+  s.probes.clear();
+  s.gravity = {0, 0, -1};
+  s.gravity_amount = Curve::constant(1);
+  s.analysis.type = AnalysisType::dynamics;
+  s.analysis.duration = 0.1;
+  s.analysis.steps = 1;
+  ContactDef floor;
+  floor.name = "floor";
+  s.contacts = {floor};
+  RigidBodyDef ball;
+  ball.name = "ball";
+  ball.shape.shape = ObstacleShape::sphere;
+  ball.shape.radius = 0.2;
+  ball.shape.position = {0.5, 0.5, 3};
+  s.rigid_bodies = {ball};
+  CableDef cable;
+  cable.name = "cable";
+  cable.points = {{0.5, 0.5, 0.25}, {0.5, 0.5, 0.75}};
+  cable.from = Vec3{0.5, 0.5, -1};
+  s.cables = {cable};
+  VolumeRows zone;
+  zone.def.space = VolumeSpace::zone;
+  VolumeZone half;
+  half.name = "lower";
+  half.boxes = {{Vec3{0, 0, 0}, Vec3{1, 1, 0.5}}};
+  zone.def.zones = {half};
+  zone.def.carries_bulk = false;
+  VolumeRows rows;
+  rows.def.name = "rows";
+  s.volumes = {rows, zone};
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("obstacles, free bodies, cables, contact points and zones reach the page") {
+  const SceneDef scene = block();
+  auto built = build(scene, {1});
+  INFO((built ? std::string() : built.error()));
+  REQUIRE(built.ok());
+  RunResult result;
+  PageScene page;
+  std::vector<std::vector<Index>> cells(1);
+  PageMeshOptions options;
+  options.triangle_cell = &cells[0];
+  const Mesh& mesh = built.value().world.mesh(built.value().bodies[0]);
+  const auto nodes = add_page_mesh(page, mesh, {"block"}, options);
+  REQUIRE(cells[0].size() == page.triangles.size() / 3);
+  const RunView view{scene, built.value(), result};
+  RunOverlays overlays;
+  overlays.start(view, page, cells);
+  REQUIRE(page.parts.size() == 3);
+  CHECK(page.parts[1].name == "ball");
+  CHECK(page.parts[1].obstacle);
+  CHECK(page.parts[2].name == "floor");
+  CHECK(page.triangle_part.size() == page.triangles.size() / 3);
+  REQUIRE(page.lines.size() == 1);
+  // One region is no map; two zones are one.
+  REQUIRE(page.fields.size() == 1);
+  CHECK(page.fields[0].categories == std::vector<std::string>{"no zone", "lower"});
+
+  World& world = built.value().world;
+  REQUIRE(world.advance(0.1).status == StepStatus::converged);
+  StepRecord record;
+  record.time = 0.1;
+  record.gauges = world.gauges();
+  result.records = {record};
+  PageFrame frame;
+  for (const Index n : nodes)
+    frame.positions.push_back(world.positions(built.value().bodies[0])[static_cast<std::size_t>(n)]);
+  overlays.append(view, frame);
+  CHECK(frame.positions.size() == page.rest.size());
+  // The nine nodes of the lower side, and no other.
+  CHECK(frame.contacts.size() == 9);
+  for (const Vec3& p : frame.contacts) CHECK(std::abs(p.z) < 1e-5);
+  REQUIRE(frame.lines.size() == 1);
+  REQUIRE(frame.lines[0].size() == 3);
+  CHECK(frame.lines[0][0].z == -1);
+  // The ball has fallen by g h^2 in its one step; the floor stays.
+  const auto lowest = [&](Index part, const std::vector<Vec3>& points) {
+    double z = 1e9;
+    for (std::size_t t = 0; t < page.triangle_part.size(); ++t) {
+      if (page.triangle_part[t] != part) continue;
+      for (std::size_t k = 0; k < 3; ++k)
+        z = std::min(z, points[static_cast<std::size_t>(page.triangles[3 * t + k])].z);
+    }
+    return z;
+  };
+  CHECK(lowest(1, page.rest) == Approx(2.8));
+  CHECK(lowest(1, frame.positions) == Approx(2.79));
+  CHECK(lowest(2, frame.positions) == Approx(0).margin(1e-12));
+  // Zones do not change: the half of the triangles below is in the zone, those above are not.
+  REQUIRE(frame.fields.size() == 1);
+  for (std::size_t t = 0; t < cells[0].size(); ++t) {
+    double z = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      z += page.rest[static_cast<std::size_t>(page.triangles[3 * t + k])].z / 3;
+    CHECK(frame.fields[0][t] == (z < 0.5 ? 1 : 0));
+  }
+}
+
+TEST_CASE("a free body that turns is drawn turned") {
+  SceneDef scene = block();
+  scene.rigid_bodies[0].shape.shape = ObstacleShape::box;
+  scene.rigid_bodies[0].shape.size = {0.6, 0.2, 0.4};
+  auto built = build(scene, {1});
+  REQUIRE(built.ok());
+  RunResult result;
+  PageScene page;
+  std::vector<std::vector<Index>> cells(1);
+  PageMeshOptions options;
+  options.triangle_cell = &cells[0];
+  const auto nodes =
+      add_page_mesh(page, built.value().world.mesh(built.value().bodies[0]), {"block"}, options);
+  const RunView view{scene, built.value(), result};
+  RunOverlays overlays;
+  overlays.start(view, page, cells);
+  StepRecord record;
+  const double quarter = std::acos(0.0);
+  record.gauges = {{"ball", "rigid_body", "x", "m", 0.5},
+                   {"ball", "rigid_body", "y", "m", 0.5},
+                   {"ball", "rigid_body", "z", "m", 3},
+                   {"ball", "rigid_body", "turn_x", "rad", 0},
+                   {"ball", "rigid_body", "turn_y", "rad", quarter},
+                   {"ball", "rigid_body", "turn_z", "rad", 0}};
+  result.records = {record};
+  PageFrame frame;
+  frame.positions.resize(nodes.size());
+  overlays.append(view, frame);
+  Vec3 low{9, 9, 9}, high{-9, -9, -9};
+  for (std::size_t k = nodes.size(); k < nodes.size() + 8; ++k) {
+    const Vec3 p = frame.positions[k] - Vec3{0.5, 0.5, 3};
+    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+  }
+  // x and z have changed places.
+  CHECK(high.x - low.x == Approx(0.4));
+  CHECK(high.y - low.y == Approx(0.2));
+  CHECK(high.z - low.z == Approx(0.6));
+}
