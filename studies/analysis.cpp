@@ -68,6 +68,19 @@ double processor_seconds(const Measured& m) {
   return m.cpu_seconds;
 }
 
+std::vector<const Measured*> lasting(std::span<const Measured* const> cells, double error) {
+  std::vector<const Measured*> out;
+  for (const Measured* m : cells) {
+    const bool lost =
+        m->error && *m->error <= error && std::any_of(cells.begin(), cells.end(), [&](const Measured* finer) {
+          return finer->error && *finer->error > error && finer->unknowns() > m->unknowns() &&
+                 finer->label("formulation") == m->label("formulation");
+        });
+    if (!lost) out.push_back(m);
+  }
+  return out;
+}
+
 const Measured* cheapest(std::span<const Measured* const> cells, double error, Cost cost) {
   const Measured* best = nullptr;
   for (const Measured* m : cells) {

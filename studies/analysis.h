@@ -33,6 +33,10 @@ using Cost = double (*)(const Measured&);
 double wall_seconds(const Measured& m);
 double processor_seconds(const Measured& m);
 
+// Cells whose error is at most `error` and stays there on every finer mesh of their formulation: a coarse
+// mesh may be right by luck, where errors of two kinds cancel. And those that miss it.
+std::vector<const Measured*> lasting(std::span<const Measured* const> cells, double error);
+
 // The cheapest cell whose error is at most `error`; null where none is.
 const Measured* cheapest(std::span<const Measured* const> cells, double error, Cost cost = wall_seconds);
 

@@ -65,6 +65,12 @@ TEST_CASE("the cost of an error is read off the line between two meshes") {
   Measured stuck = point(5000, 100, 0.002);
   const std::vector<const Measured*> stuck_cells{&coarse, &fine, &stuck};
   CHECK_FALSE(extrapolated_seconds(stuck_cells, 1e-4));
+  // The middle mesh is right by luck: the finest is not.
+  const Measured lucky = point(500, 5, 1e-5);
+  const std::vector<const Measured*> lucky_cells{&coarse, &lucky, &fine};
+  CHECK(lasting(lucky_cells, 1e-4).size() == 2);
+  CHECK(cheapest(lasting(lucky_cells, 1e-4), 1e-4) == nullptr);
+  CHECK(cheapest(lasting(lucky_cells, 0.01), 0.01) == &lucky);
   stuck.cpu_seconds = 7;
   CHECK(seconds_at(std::vector<const Measured*>{&stuck}, 0.01, processor_seconds).value() == 7);
 }

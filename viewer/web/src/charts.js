@@ -6,8 +6,8 @@ import uPlot from 'uplot';
 import { el } from './dom.js';
 import { significant } from './numbers.js';
 
-const LIGHT = ['#1f6fb5', '#d1571b', '#2a8a57', '#a4388f', '#8a6d00', '#5b55c9', '#c22f4b', '#45707f', '#7a5230', '#3f3f3f'];
-const DARK = ['#6db3f2', '#f59a62', '#6ccb97', '#e08bd0', '#dcc04f', '#a9a4ff', '#f5839a', '#93bccb', '#d0a27a', '#cfcfcf'];
+const LIGHT = ['#1f6fb5', '#d1571b', '#2a8a57', '#a4388f', '#8a6d00', '#5b55c9', '#c22f4b', '#45707f', '#7a5230', '#3f3f3f', '#7fa81f', '#e05fa8'];
+const DARK = ['#6db3f2', '#f59a62', '#6ccb97', '#e08bd0', '#dcc04f', '#a9a4ff', '#f5839a', '#93bccb', '#d0a27a', '#cfcfcf', '#b9dc62', '#ff9fd0'];
 const HEIGHT = 380;
 const FONT = '11px system-ui, "Segoe UI", Roboto, "Helvetica Neue", sans-serif';
 
@@ -166,10 +166,23 @@ function table({ title, head, rows, failed }) {
     el('tbody', {}, ...rows.map((row, i) => el('tr', bad.has(i) ? { class: 'failed' } : {}, ...row.map((c) => el('td', c.length > 60 ? { class: 'long' } : {}, c))))))));
 }
 
-/** "#section=2" leaves only that section, for pictures: the first is 1. */
+/**
+ * For pictures: "#section=2" leaves only that section, "#section=2&figure=1" only its first diagram or bars, and
+ * "&tables=0" no tables. All count from 1.
+ */
 function wantedSections(sections) {
-  const wanted = Number(new URLSearchParams(window.location.hash.slice(1)).get('section'));
-  return wanted >= 1 && wanted <= sections.length ? [sections[wanted - 1]] : null;
+  const options = new URLSearchParams(window.location.hash.slice(1));
+  const wanted = Number(options.get('section')), figure = Number(options.get('figure'));
+  if (!(wanted >= 1 && wanted <= sections.length)) return null;
+  const section = { ...sections[wanted - 1] };
+  if (figure >= 1) {
+    const diagrams = section.diagrams.length;
+    section.text = '';
+    section.bars = section.bars.slice(Math.max(0, figure - 1 - diagrams), Math.max(0, figure - diagrams));
+    section.diagrams = section.diagrams.slice(figure - 1, figure);
+  }
+  if (figure >= 1 || options.get('tables') === '0') section.tables = [];
+  return [section];
 }
 
 function build(page) {
