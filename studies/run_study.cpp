@@ -13,7 +13,7 @@ namespace isochor::studies {
 namespace {
 
 // Repeats stop once a cell has taken so long [s].
-constexpr double kQuickBudget = 1.5, kBudget = 20;
+constexpr double kQuickBudget = 1.5, kBudget = 4;
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
