@@ -201,6 +201,7 @@ TortureResult TortureBench::march(double h, int steps) {
   TortureResult out;
   const double start = seconds_now();
   StepReport report;
+  (void)world_->compile();  // the state is there from then on; errors come back with the first step
   for (; out.steps < steps; ++out.steps) {
     const std::uint64_t before = world_->state_hash();
     const double t = world_->time();
