@@ -165,7 +165,7 @@ SceneDef gripper(const SceneVariant& v) {
     CavityDef air = chamber("chamber", 0);
     air.name = "air " + std::to_string(k + 1);
     air.body = body;
-    air.amount = Curve{{{0, 0}, {closed, 8e3}}};
+    air.amount = Curve{{{0, 0}, {closed, 14e3}}};
     s.cavities.push_back(air);
     ContactDef grip;
     grip.name = "grip " + std::to_string(k + 1);
@@ -180,7 +180,7 @@ SceneDef gripper(const SceneVariant& v) {
   thing.shape.shape = ObstacleShape::sphere;
   thing.shape.radius = ball;
   thing.shape.position = {0, 0, height};
-  thing.density = 300;
+  thing.density = 100;
   s.rigid_bodies = {thing};
   ContactDef table = against("table", ObstacleShape::plane, {0, 0, height - ball});
   table.rigid = "ball";
