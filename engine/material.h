@@ -1,6 +1,7 @@
 // A hyperelastic energy density, evaluated for several deformation gradients at once.
 #pragma once
 
+#include <limits>
 #include <memory>
 
 #include "engine/spectrum.h"
@@ -11,6 +12,8 @@ namespace isochor {
 struct alignas(64) PointBatch {
   double F[9][kLanes];
   Index element[kLanes];  // for parameter fields: the material's own element number
+  double
+      J_before[kLanes];  // det F when the increment began; set where Material::looks_back_below() asks for it
 };
 
 // psi [Pa], P = dpsi/dF [Pa] and A = dP/dF [Pa] (lower triangle packed: A[i (i + 1) / 2 + j], j <= i).
@@ -26,6 +29,9 @@ class Material {
   virtual std::string_view name() const = 0;
   // Exact derivatives up to `want`, all lanes. psi is +infinity where the energy has no value.
   virtual void evaluate(Want want, const PointBatch& points, ResponseBatch& response) const = 0;
+
+  // Below this J evaluate() and spectrum() read points.J_before.
+  virtual double looks_back_below() const { return -std::numeric_limits<double>::infinity(); }
 
   // A once more, as the sum of two parts that can be made definite:
   // the isotropic part in closed form in the frame of F (all zero where a lane has no value) ...

@@ -157,6 +157,10 @@ double Newton::merit_slope(std::span<const double> lambda) {
   if (has_gap_) {
     // r + H dx + G^T dlambda + reaction = 0 at the given directions.
     assembly_.hessian_times(dx_, node_work_);
+    if (mass_scale_ > 0) {
+      assembly_.mass_times(dx_, inertia_);
+      for (std::size_t i = 0; i < dx_.size(); ++i) node_work_[i] += mass_scale_ * inertia_[i];
+    }
     for (std::size_t r = 0; r < row_work_.size(); ++r) row_work_[r] = lambda_new_[r] - lambda[r];
     assembly_.constraint_force(row_work_, reaction_);
     for (std::size_t i = 0; i < dx_.size(); ++i) {

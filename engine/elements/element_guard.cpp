@@ -4,18 +4,29 @@ namespace isochor {
 
 namespace {
 
-// One lane that is below the threshold.
-void evaluate_lane(Want want, const PointBatch& points, ResponseBatch& r, int l, double b, double J,
-                   double threshold, const double g[9]) {
-  if (!(J > 0)) {
-    r.psi[l] = std::numeric_limits<double>::infinity();
-    return;
-  }
+// The energy and its derivatives with respect to J.
+struct Barrier {
+  double value, first, second;
+};
+
+Barrier barrier(double b, double J, double threshold) {
   const double q = std::log(J / threshold);
-  r.psi[l] = -b * q * q * q;
+  return {-b * q * q * q, -3 * b * q * q / J, -3 * b * (2 * q - q * q) / (J * J)};
+}
+
+// For J below the threshold; a value that is not finite where there is none.
+Barrier guard(double b, double J, double threshold, double J_before) {
+  if (!(J_before > 0.02 * threshold)) return {0, 0, 0};
+  if (!(J > 0)) return {std::numeric_limits<double>::infinity(), 0, 0};
+  return barrier(b, J, threshold);
+}
+
+// One lane that is below the threshold.
+void evaluate_lane(Want want, const PointBatch& points, ResponseBatch& r, int l, const Barrier& energy,
+                   const double g[9]) {
+  r.psi[l] = energy.value;
   if (want == Want::value) return;
-  const double first = -3 * b * q * q / J;
-  const double second = -3 * b * (2 * q - q * q) / (J * J);
+  const double first = energy.first, second = energy.second;
   for (int i = 0; i < 9; ++i) r.P[i][l] = first * g[i];
   if (want != Want::hessian) return;
   int k = 0;
@@ -60,7 +71,9 @@ void ElementGuard::evaluate(Want want, const PointBatch& points, ResponseBatch& 
       for (int i = 0; i < 45; ++i) r.A[i][l] = 0;
     }
     const double b = b_[at(points.element[l])];
-    if (b > 0 && !(J >= threshold_)) evaluate_lane(want, points, r, l, b, J, threshold_, g);
+    if (b > 0 && !(J >= threshold_)) {
+      evaluate_lane(want, points, r, l, guard(b, J, threshold_, points.J_before[l]), g);
+    }
   }
 }
 
@@ -68,11 +81,11 @@ void ElementGuard::spectrum(const PointBatch& points, const Svd3& svd, Spectrum&
   Lanes first = {}, second = {};
   for (int l = 0; l < kLanes; ++l) {
     const double J = svd.sigma[0][l] * svd.sigma[1][l] * svd.sigma[2][l];
-    if (!(J > 0) || J >= threshold_) continue;
-    const double q = std::log(J / threshold_);
     const double b = b_[at(points.element[l])];
-    first[l] = -3 * b * q * q / J;
-    second[l] = -3 * b * (2 * q - q * q) / (J * J);
+    if (!(b > 0) || !(J < threshold_)) continue;
+    const Barrier energy = guard(b, J, threshold_, points.J_before[l]);
+    first[l] = energy.first;
+    second[l] = energy.second;
   }
   out = {};
   add_volume(svd, second, first, out);

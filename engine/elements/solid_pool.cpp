@@ -65,6 +65,7 @@ VolumeResponse volume_response(VolumeStrain strain, double j_minus_1) {
 SolidPool::SolidPool(std::string name, SolidData data, std::shared_ptr<const Material> material,
                      VolumeStrain strain)
     : name_(std::move(name)), material_(std::move(material)), strain_(strain), data_(std::move(data)) {
+  if (material_) looks_back_below_ = material_->looks_back_below();
   nodes_ = data_.nodes;
   finish_topology();
 }
@@ -143,6 +144,12 @@ void SolidPool::flush(const StencilRequest& request, const StencilSlots& slots, 
       const Lane& lane = lanes[std::min(l, count - 1)];
       for (int i = 0; i < 9; ++i) batch.F[i][l] = lane.F[i];
       batch.element[l] = lane.stencil;
+      batch.J_before[l] = 1;
+      if (1 + lane.volume_strain >= looks_back_below_ || request.increment.before.empty()) continue;
+      double F[9];
+      deformation_gradient(lane.stencil, lane.point, request.increment.before, request.rest, F,
+                           batch.J_before[l]);
+      batch.J_before[l] += 1;
     }
   }
   if (material_) material_->evaluate(definite ? Want::gradient : request.want, batch, response);

@@ -57,6 +57,7 @@ class SolidPool final : public StencilPool {
   std::string name_;
   std::shared_ptr<const Material> material_;
   VolumeStrain strain_;
+  double looks_back_below_ = -std::numeric_limits<double>::infinity();
   SolidData data_;
 };
 

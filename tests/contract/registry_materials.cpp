@@ -321,11 +321,37 @@ void add_poisson_field(std::vector<MaterialCase>& out) {
   out.push_back(c);
 }
 
+// A material for points that began their increment at a given J.
+class BeganAt final : public isochor::Material {
+ public:
+  BeganAt(std::shared_ptr<const isochor::Material> material, double J)
+      : material_(std::move(material)), J_(J) {}
+  std::string_view name() const override { return material_->name(); }
+  void evaluate(isochor::Want want, const isochor::PointBatch& points,
+                isochor::ResponseBatch& response) const override {
+    material_->evaluate(want, began(points), response);
+  }
+  void spectrum(const isochor::PointBatch& points, const isochor::Svd3& svd,
+                isochor::Spectrum& out) const override {
+    material_->spectrum(began(points), svd, out);
+  }
+
+ private:
+  isochor::PointBatch began(isochor::PointBatch points) const {
+    for (double& J : points.J_before) J = J_;
+    return points;
+  }
+  std::shared_ptr<const isochor::Material> material_;
+  double J_;
+};
+
 void add_element_guard(std::vector<MaterialCase>& out) {
   constexpr double b = 1.3, threshold = 0.5;
+  const auto guard =
+      std::make_shared<isochor::ElementGuard>(std::vector<double>(isochor::kLanes, b), threshold);
   MaterialCase c;
   c.name = "element_guard";
-  c.material = std::make_shared<isochor::ElementGuard>(std::vector<double>(isochor::kLanes, b), threshold);
+  c.material = std::make_shared<BeganAt>(guard, 1);
   c.energy = [](const Gradient9& F) {
     const HyperDual J = determinant(F);
     if (J.a >= threshold) return HyperDual();
@@ -333,6 +359,12 @@ void add_element_guard(std::vector<MaterialCase>& out) {
     return -b * q * q * q;
   };
   c.largest_J = 1;
+  out.push_back(c);
+
+  c.name = "element_guard of what began inverted";
+  c.material = std::make_shared<BeganAt>(guard, -0.5);
+  c.energy = [](const Gradient9&) { return HyperDual(); };
+  c.inverted = true;
   out.push_back(c);
 }
 

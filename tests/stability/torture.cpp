@@ -66,6 +66,14 @@ TEST_CASE("time steps from a tenth of a millisecond to a tenth of a second") {
   }
 }
 
+TEST_CASE("ends that move within short steps") {
+  for (const double step : {1e-4, 1e-3}) {
+    all_solved({"stretch", settings(0.5, step, 1, kEdge)}, 2);
+    all_solved({"twist", settings(0.4999, step, 1, kTet4)}, 2);
+    all_solved({"puck", settings(0.49, step, 1, kTet4)}, 1);
+  }
+}
+
 TEST_CASE("incompressibility from nearly to fully") {
   for (const double poisson : {0.45, 0.49, 0.499, 0.4999, 0.5}) {
     all_solved({"twist", settings(poisson, 0.033, 1, kTet4)}, 2);
@@ -87,6 +95,8 @@ TEST_CASE("crushed and mirrored starts come back") {
   all_solved({"crushed", settings(0.49, 0, 1, kTet4)});
   all_solved({"mirrored", settings(0.49, 0, 1, kTet4)});
   all_solved({"scrambled", settings(0.49, 0, 1, kTet4)}, 3);
+  all_solved({"crushed", settings(0.5, 0, 1, kEdge)});
+  all_solved({"mirrored", settings(0.5, 0, 1, kEdge)});
 }
 
 TEST_CASE("nothing moves at rest, bad loads are refused, a free body keeps its momentum") {

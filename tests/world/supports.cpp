@@ -76,3 +76,26 @@ TEST_CASE("a rotation is a rotation at every amount") {
     CHECK(u.z == Approx(std::sin(angle) * y + std::cos(angle) * z - z).epsilon(1e-9));
   }
 }
+
+TEST_CASE("a linear body that is moved within a short step takes one iteration") {
+  // The inertia of the nodes that are moved is part of the merit: without it no full step would be accepted.
+  for (const bool consistent : {false, true}) {
+    WorldOptions options;
+    options.scheme = implicit_euler();
+    options.consistent_mass = consistent;
+    ElasticConstants elastic;
+    elastic.young = 1e5;
+    elastic.poisson = 0.3;
+    World world = make_world(options);
+    const BodyId body = add_body(world, box({2, 2, 2}), Element::tet4, value(isochor::linear(elastic)));
+    DirichletDef def;
+    def.where.surfaces = {"x0"};
+    def.displacement = {0.01, 0, 0};
+    def.amount = Curve::ramp(1, 1e-4);
+    value(world.add(dirichlet(def)));
+    const StepReport report = world.step(1e-4);
+    CHECK(report.status == StepStatus::converged);
+    CHECK(report.iterations == 1);
+    CHECK(displacement_at(world, body, {0, 0, 0}).x == Approx(0.01).epsilon(1e-12));
+  }
+}
