@@ -32,6 +32,9 @@ class RigidMotion final : public Motion {
     return u;
   }
   bool never_moves() const override { return angle_ == 0 && norm(displacement_) == 0; }
+  double turn(double t0, double t1) const override {
+    return angle_ == 0 ? 0 : std::abs(angle_ * (amount_->value(t1) - amount_->value(t0)));
+  }
 
  private:
   Vec3 displacement_, point_, axis_;
@@ -44,6 +47,7 @@ class BoneMotion final : public Motion {
   explicit BoneMotion(PoseTrack track) : track_(std::move(track)) {}
   Vec3 displacement(double t, const Vec3& rest) const override { return carried(track_, t, rest) - rest; }
   bool never_moves() const override { return track_.keys.size() < 2; }
+  double turn(double t0, double t1) const override { return turned(track_, t0, t1); }
 
  private:
   PoseTrack track_;
@@ -60,6 +64,7 @@ class HeldRows final : public RowPool {
       value[r] = dot(direction[r], motion_->displacement(t, point[r]));
     }
   }
+  double turn(double t0, double t1) const override { return motion_->turn(t0, t1); }
   std::vector<Vec3> direction, point;  // of each row; rest positions [m]
 
  private:

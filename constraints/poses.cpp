@@ -63,6 +63,18 @@ Pose pose_at(const PoseTrack& track, double t) {
   return {t, a.position + s * (b.position - a.position), slerp(unit(a.rotation), unit(b.rotation), s)};
 }
 
+double turned(const PoseTrack& track, double t0, double t1) {
+  const auto& keys = track.keys;
+  double sum = 0;
+  for (std::size_t k = 1; k < keys.size(); ++k) {
+    const double from = std::max(t0, keys[k - 1].t), to = std::min(t1, keys[k].t);
+    if (!(to > from)) continue;
+    const double cosine = std::abs(inner(unit(keys[k - 1].rotation), unit(keys[k].rotation)));
+    sum += 2 * std::acos(std::min(1.0, cosine)) * (to - from) / (keys[k].t - keys[k - 1].t);
+  }
+  return sum;
+}
+
 Vec3 carried(const PoseTrack& track, double t, const Vec3& rest) {
   if (track.keys.empty() || t <= track.keys.front().t) return rest;
   const Pose& first = track.keys.front();

@@ -114,6 +114,12 @@ class Motion {
   virtual ~Motion() = default;
   virtual Vec3 displacement(double t, const Vec3& rest) const = 0;  // [m]
   virtual bool never_moves() const { return false; }
+  // Angle that it turns from t0 to t1 [rad], all the way round where it goes round.
+  virtual double turn(double t0, double t1) const {
+    (void)t0;
+    (void)t1;
+    return 0;
+  }
 };
 
 // A direction in which an effect holds a node; the directions of one node are orthonormal.

@@ -8,6 +8,7 @@ namespace isochor {
 namespace {
 
 constexpr int most_failed_ventures = 3;
+constexpr int most_returns = 4;
 
 // Where the parabola through the start, its slope and one value has its minimum.
 double parabola_minimum(double tau, double start, double slope, double value) {
@@ -217,14 +218,17 @@ double Newton::try_step(const SaddleProblem& p, double tau, std::span<const Vec3
 // tangent, stiff parts charge for that, and the next Newton step takes it back (the watchdog technique of
 // Chamberlain, Powell, Lemarechal & Pedersen 1982). Ventures that fail are followed by shorter ones, and
 // three more failures than successes, or one that leaves the domain of the energies, end them for this solve.
+// A long way needs several steps back; they go on while each takes most of what is left to pay.
 bool Newton::may_venture() const {
   return !venture_.under_way && venture_.failed < most_failed_ventures && !mended_ && !has_gap_ &&
          !any_clamped_ && !system_->has_lag();
 }
 
-void Newton::venture(std::span<const Vec3> x, std::span<const double> lambda, double enough) {
+void Newton::venture(std::span<const Vec3> x, std::span<const double> lambda, double enough, double excess) {
   Venture& v = venture_;
   v.under_way = true;
+  v.returns = 0;
+  v.excess = excess;
   v.enough = enough;
   v.gamma = gamma_;
   std::copy(x.begin(), x.end(), v.x.begin());
@@ -244,6 +248,14 @@ bool Newton::settle_venture(const SaddleProblem& p, std::span<Vec3> x, std::span
   std::copy(v.lambda_new.begin(), v.lambda_new.end(), lambda_new_.begin());
   gamma_ = v.gamma;
   const double value = merit(p, 1, lambda_trial_);
+  if (value > v.enough && value - v.enough < 0.2 * v.excess && ++v.returns < most_returns) {
+    std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
+    keep_multipliers(p, x, lambda);
+    v.under_way = true;
+    v.excess = value - v.enough;
+    full_step_ = false;
+    return true;
+  }
   if (value <= v.enough) {
     std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
     keep_multipliers(p, x, lambda);
@@ -252,8 +264,7 @@ bool Newton::settle_venture(const SaddleProblem& p, std::span<Vec3> x, std::span
     v.length = std::min(1.0, 1.5 * v.length);
     return true;
   }
-  // Out of where energies have a value, shorter ones lead there too.
-  v.failed = std::isfinite(value) ? v.failed + 1 : most_failed_ventures;
+  ++v.failed;
   v.length *= 0.4;
   std::copy(v.x.begin(), v.x.end(), x.begin());
   std::copy(v.dx.begin(), v.dx.end(), dx_.begin());
@@ -296,7 +307,10 @@ bool Newton::search(const SaddleProblem& p, std::span<Vec3> x, std::span<double>
           if (!std::isfinite(value)) continue;
         }
         accepted = value <= start + 1e-4 * tau * slope;
-        if (!accepted) venture(x, lambda, start + 1e-4 * tau * slope);
+        if (!accepted) {
+          const double enough = start + 1e-4 * tau * slope;
+          venture(x, lambda, enough, value - enough);
+        }
         accepted = true;
         break;
       }

@@ -44,7 +44,7 @@ class Newton : public SaddlePoint {
   double try_step(const SaddleProblem& p, double tau, std::span<const Vec3> x, std::span<const double> lambda,
                   SaddleReport& report);
   bool may_venture() const;
-  void venture(std::span<const Vec3> x, std::span<const double> lambda, double enough);
+  void venture(std::span<const Vec3> x, std::span<const double> lambda, double enough, double excess);
   bool settle_venture(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda,
                       SaddleReport& report);
   bool search(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda, SaddleReport& report);
@@ -56,7 +56,9 @@ class Newton : public SaddlePoint {
     bool under_way = false;
     int failed = 0;     // in this solve, less those that went well
     double length = 1;  // of the step that is ventured
+    int returns = 0;    // steps back so far
     double enough = 0, gamma = 0;
+    double excess = 0;  // of the merit over `enough` where it is now
     std::vector<Vec3> x, dx;
     std::vector<double> lambda, lambda_new;
   } venture_;

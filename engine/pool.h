@@ -150,6 +150,12 @@ class RowPool {
     (void)t;
     for (double& v : value) v = 0;
   }
+  // As Prescriber::turn(), of the targets.
+  virtual double turn(double t0, double t1) const {
+    (void)t0;
+    (void)t1;
+    return 0;
+  }
 
   // Bounds on the multipliers: both empty, or one entry a row with -infinity or +infinity where there is
   // none. A cable that only pulls has lower = 0. A bounded row reads: lambda is where the projection of
@@ -197,6 +203,13 @@ class Prescriber {
   std::vector<PrescribedNode> nodes;
   // Target positions at time t, one for each entry of nodes; only the given directions of it count.
   virtual void target(double t, std::span<Vec3> position) const = 0;
+  // Largest angle [rad] by which anything turns from t0 to t1: beyond half a turn the targets at t1 alone do
+  // not tell which way round.
+  virtual double turn(double t0, double t1) const {
+    (void)t0;
+    (void)t1;
+    return 0;
+  }
 };
 
 // Forces that do not depend on positions (gravity, dead tractions): potential -f . x.

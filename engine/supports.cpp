@@ -1,5 +1,6 @@
 #include "engine/supports.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace isochor {
@@ -18,7 +19,17 @@ void SupportPrescriber::add(Index node, const Vec3& rest, std::vector<Term> term
   // With all three given, the frame is that of the axes: no rotation of the unknowns is needed anyway.
   nodes.push_back(p);
   rest_.push_back(rest);
+  for (const Term& term : terms) {
+    if (std::find(motions_.begin(), motions_.end(), term.motion) == motions_.end())
+      motions_.push_back(term.motion);
+  }
   terms_.push_back(std::move(terms));
+}
+
+double SupportPrescriber::turn(double t0, double t1) const {
+  double largest = 0;
+  for (const auto& motion : motions_) largest = std::max(largest, motion->turn(t0, t1));
+  return largest;
 }
 
 void SupportPrescriber::target(double t, std::span<Vec3> position) const {

@@ -13,6 +13,8 @@
 namespace isochor {
 
 struct World::Impl {
+  // Largest angle by which anything that is prescribed turns from t0 to t1 [rad].
+  double largest_turn(double t0, double t1) const;
   WorldOptions options;
   std::unique_ptr<TbbParallel> parallel;
   Builder builder;

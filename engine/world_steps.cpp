@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 
 #include "engine/path_follower.h"
 #include "engine/world_impl.h"
@@ -86,6 +87,12 @@ StepReport World::step(double h, const StepBudget& budget) {
   w.amounts_before.clear();
   w.save_amounts(w.amounts_before);
   w.begin_amounts(w.state.t, w.state.t + h);
+  if (const double turn = w.largest_turn(w.state.t, w.state.t + h); turn > 0.999 * std::numbers::pi) {
+    w.load_amounts(w.amounts_before);
+    return w.invalid("step: something that is prescribed turns by " + std::to_string(turn) +
+                     " rad within the step; from half a turn on its end does not tell the way round: use "
+                     "advance(), or steps of less than 3.14 rad");
+  }
   StepReport report;
   const double t_target = w.state.t + h;
   Impl::Allowance allowance{w.options.max_iterations, 10 * w.options.max_iterations,
@@ -114,6 +121,13 @@ StepReport World::step(double h, const StepBudget& budget) {
   if (!kept) w.load_amounts(w.amounts_before);
   w.finish_report(report, before, seconds_since(start));
   return report;
+}
+
+double World::Impl::largest_turn(double t0, double t1) const {
+  double largest = 0;
+  for (const auto& p : system->parts().prescribers) largest = std::max(largest, p->turn(t0, t1));
+  for (const auto& p : system->parts().row_pools) largest = std::max(largest, p->turn(t0, t1));
+  return largest;
 }
 
 // Local error of the increment just accepted, from velocities before and after it: that of the scheme's
@@ -213,7 +227,8 @@ StepReport World::advance(double h) {
   const double t0 = w.state.t, t_end = t0 + h;
   w.begin_amounts(t0, t_end);
   StepReport report;
-  constexpr int patience = 25, patience_for_factors = 35;
+  constexpr int patience = 40, patience_for_factors = 70;
+  constexpr double largest_turn = 2;  // [rad] an increment
   const bool statics = !w.options.scheme->has_inertia(), careful = w.controls_error();
   double increment = h;
   if (careful && w.error_memory()[1] > 0) increment = std::min(h, w.error_memory()[1]);
@@ -221,7 +236,9 @@ StepReport World::advance(double h) {
   while (w.state.t < t_end - 1e-12 * h) {
     // The last increment lands on the end exactly.
     const double remaining = t_end - w.state.t;
-    const double dt = increment > 0.999 * remaining ? remaining : increment;
+    double dt = increment > 0.999 * remaining ? remaining : increment;
+    // The end of half a turn is that of half a turn the other way.
+    while (w.largest_turn(w.state.t, w.state.t + dt) > largest_turn && dt > 1e-9 * h) dt *= 0.5;
     // What converges at all does so in a dozen iterations; while the increment can still be cut, more are
     // wasted.
     const bool last_chance = 0.5 * dt < w.options.smallest_fraction * h;

@@ -28,6 +28,9 @@ Pose pose_at(const PoseTrack& track, double t);
 // Where a point that is fixed to the bone is at time t; `rest` is where it is at the first keyframe [m].
 Vec3 carried(const PoseTrack& track, double t, const Vec3& rest);
 
+// The angle that the bone turns from t0 to t1 [rad], summed over its keyframes.
+double turned(const PoseTrack& track, double t0, double t1);
+
 // Refuses tracks without keys, times that do not ascend, numbers that are not finite and quaternions far
 // from unit length.
 Result<void> check_poses(const PoseTrack& track);

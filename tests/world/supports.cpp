@@ -1,5 +1,6 @@
 // Prescribed motions: oblique directions, several effects on one node, rotations.
 #include <cmath>
+#include <numbers>
 
 #include "support/worlds.h"
 
@@ -98,4 +99,44 @@ TEST_CASE("a linear body that is moved within a short step takes one iteration")
     CHECK(report.iterations == 1);
     CHECK(displacement_at(world, body, {0, 0, 0}).x == Approx(0.01).epsilon(1e-12));
   }
+}
+
+TEST_CASE("half a turn goes the way that was told") {
+  const auto twisted = [](SupportTreatment treatment) {
+    Block b;
+    add_volume(b.world, b.body);
+    hold(b.world, b.body, {"x0"});
+    DirichletDef turn;
+    turn.where.surfaces = {"x1"};
+    turn.axis_point = {0, 0.5, 0.5};
+    turn.axis = {1, 0, 0};
+    turn.angle = std::numbers::pi;
+    turn.amount = Curve::ramp(1);
+    turn.treatment = treatment;
+    value(b.world.add(dirichlet(turn)));
+    return b;
+  };
+  for (const auto treatment : {SupportTreatment::eliminated, SupportTreatment::multiplier}) {
+    Block b = twisted(treatment);
+    // One step cannot tell the way round, and says so; nothing has moved.
+    const StepReport refused = b.world.step(1);
+    CHECK(refused.status == StepStatus::invalid);
+    CHECK(refused.reason.find("3.14") != std::string::npos);
+    CHECK(b.world.time() == 0);
+    must_advance(b.world);
+    // Halfway between the ends the block has turned by a quarter.
+    const Vec3 u = displacement_at(b.world, b.body, {0.5, 1, 1});
+    CHECK(u.y < -0.5);
+    CHECK(std::abs(u.z) < 0.4);
+  }
+}
+
+TEST_CASE("the way of a bone is summed over its keyframes") {
+  const double h = std::sqrt(0.5);
+  PoseTrack track;
+  track.keys = {{0, {}, {1, 0, 0, 0}}, {1, {}, {h, h, 0, 0}}, {2, {}, {1, 0, 0, 0}}, {4, {}, {0, 1, 0, 0}}};
+  CHECK(turned(track, 0, 4) == Approx(2 * std::numbers::pi).epsilon(1e-7));
+  CHECK(turned(track, 0.5, 1.5) == Approx(0.5 * std::numbers::pi).epsilon(1e-7));
+  CHECK(turned(track, 3, 9) == Approx(0.5 * std::numbers::pi).epsilon(1e-7));
+  CHECK(turned(track, 4, 9) == 0);
 }
