@@ -1,5 +1,6 @@
 #include "constraints/contact_pool.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -30,6 +31,22 @@ Mat3 pulled_back(const Mat3& B, const Mat3& m) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j)
       out(i, j) = B(0, i) * half(0, j) + B(1, i) * half(1, j) + B(2, i) * half(2, j);
+  }
+  return out;
+}
+
+// Negative eigenvalues raised to zero or turned positive.
+Mat3 made_definite(const Mat3& m, Definiteness policy) {
+  Eigen::Matrix3d full;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) full(i, j) = 0.5 * (m(i, j) + m(j, i));
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(full);
+  Mat3 out;
+  for (int k = 0; k < 3; ++k) {
+    const double value = solver.eigenvalues()[k];
+    const Vec3 v{solver.eigenvectors()(0, k), solver.eigenvectors()(1, k), solver.eigenvectors()(2, k)};
+    add_outer(out, policy == Definiteness::absolute ? std::abs(value) : std::max(value, 0.0), v, v);
   }
   return out;
 }
@@ -106,7 +123,9 @@ ContactPool::Friction ContactPool::friction(const StencilRequest& q, const Frame
   const Vec3 own = frames.lag.to_own(point(s, q.lag.x));
   const Vec3 slope = distance_to(shape_, own).normal;
   f.normal = transposed_times(frames.lag.inverse, slope);
-  f.normal = (1 / norm(f.normal)) * f.normal;
+  // Fields may be flat where they are far from the surface.
+  const double steepness = norm(f.normal);
+  f.normal = steepness > 0 ? (1 / steepness) * f.normal : Vec3{0, 0, 1};
   // Where they touch: the surface of the shape below the point, and for a point that keeps away the place on
   // its own body.
   const Vec3 touch = own - offset_[at(s)] * slope;
@@ -141,7 +160,13 @@ void ContactPool::add_curvature(const StencilRequest& q, const Distance& d, cons
   double factor = multiplier;
   if (q.definiteness == Definiteness::projected) factor = std::max(multiplier, 0.0);
   if (q.definiteness == Definiteness::absolute) factor = std::abs(multiplier);
-  const Mat3 curvature = pulled_back(frame.inverse, d.curvature);
+  Mat3 curvature = pulled_back(frame.inverse, d.curvature);
+  if (!is_convex(shape_) && q.definiteness != Definiteness::exact) {
+    // Its eigenvalues have either sign, whatever that of the multiplier.
+    for (double& v : curvature.m) v *= multiplier;
+    curvature = made_definite(curvature, q.definiteness);
+    factor = 1;
+  }
   const auto c = weights(s, own);
   const std::size_t n = nodes_[s].size(), first = rider_[at(s)] ? 4 : 1;
   // The cross terms are indefinite: left out where a definite matrix is asked for.

@@ -132,6 +132,12 @@ Distance distance_to(const Obstacle& s, const Vec3& y) {
       return to_cylinder(s, y);
     case ObstacleShape::box:
       return to_box(s, y);
+    case ObstacleShape::mesh:
+    case ObstacleShape::distance_field: {
+      Distance out = s.solid->distance(y);
+      out.value -= s.rounding;
+      return out;
+    }
   }
   Distance out;
   out.value = y.z;
@@ -139,8 +145,16 @@ Distance distance_to(const Obstacle& s, const Vec3& y) {
   return out;
 }
 
+bool is_solid(const Obstacle& s) {
+  return s.shape == ObstacleShape::mesh || s.shape == ObstacleShape::distance_field;
+}
+
+bool is_convex(const Obstacle& s) {
+  return !is_solid(s);
+}
+
 double distance_value(const Obstacle& s, const Vec3& y) {
-  return distance_to(s, y).value;
+  return is_solid(s) ? s.solid->value(y) - s.rounding : distance_to(s, y).value;
 }
 
 double smallest_extent(const Obstacle& s) {
@@ -154,6 +168,11 @@ double smallest_extent(const Obstacle& s) {
       return std::min(2 * s.radius, s.length);
     case ObstacleShape::box:
       return std::min({s.size.x, s.size.y, s.size.z});
+    case ObstacleShape::mesh:
+    case ObstacleShape::distance_field: {
+      const auto [low, high] = s.solid->box();
+      return std::min({high.x - low.x, high.y - low.y, high.z - low.z});
+    }
   }
   return std::numeric_limits<double>::infinity();
 }
@@ -162,6 +181,7 @@ bool passes_through(const Obstacle& s, const Vec3& y0, const Vec3& y1, Vec3& met
   if (s.shape == ObstacleShape::plane) return false;
   const Vec3 way = y1 - y0;
   if (distance_value(s, y0) > norm(way)) return false;
+  if (is_solid(s)) return passes_through_solid(*s.solid, y0, y1, met);
   // The distance along a line is convex: halving finds where it is least.
   double low = 0, high = 1;
   for (int k = 0; k < 50; ++k) {
@@ -182,6 +202,24 @@ bool passes_through(const Obstacle& s, const Vec3& y0, const Vec3& y1, Vec3& met
   met = y0 + low * way;
   return dot(distance_to(s, met).normal, distance_to(s, y1).normal) < same_side;
 }
+
+namespace {
+
+Result<void> check_solid(const Obstacle& o) {
+  const std::string kind = o.shape == ObstacleShape::mesh ? "mesh" : "distance field";
+  if (!o.solid) {
+    return Error{"the obstacle is a " + kind + " but has no solid; " +
+                 (o.shape == ObstacleShape::mesh
+                      ? "give a surface: file in a scene file, solid = mesh_solid(...) in a program"
+                      : "give distances: file in a scene file, solid = field_solid(...) in a program")};
+  }
+  if (!(o.rounding >= 0) || !std::isfinite(o.rounding)) {
+    return Error{"the obstacle's rounding = " + number(o.rounding) + " m; it must be zero or positive"};
+  }
+  return {};
+}
+
+}  // namespace
 
 Result<void> check_obstacle(const Obstacle& o) {
   const auto size = [](double v) { return v > 0 && std::isfinite(v); };
@@ -211,9 +249,12 @@ Result<void> check_obstacle(const Obstacle& o) {
       return Error{"the obstacle's axis and side are parallel; a box needs two directions to stand by"};
     }
   }
+  if (is_solid(o)) {
+    if (auto r = check_solid(o); !r) return r;
+  }
   const bool edges = o.shape == ObstacleShape::box || o.shape == ObstacleShape::cylinder;
   const double most = edges ? 0.5 * smallest_extent(o) : 0;
-  if (!(o.rounding >= 0) || o.rounding > most || (edges && o.rounding == most)) {
+  if (!is_solid(o) && (!(o.rounding >= 0) || o.rounding > most || (edges && o.rounding == most))) {
     return Error{"the obstacle's rounding = " + number(o.rounding) + " m; " +
                  (edges ? "it must be less than half its smallest extent, " + number(most) + " m"
                         : "only the edges of cylinders and boxes are rounded, leave it at 0")};

@@ -1,7 +1,7 @@
 // Signed distances to rigid shapes, with exact derivatives.
 #pragma once
 
-#include "engine/base.h"
+#include "constraints/solid.h"
 #include "isochor/contact.h"
 
 namespace isochor {
@@ -16,13 +16,9 @@ struct ObstaclePose {
 };
 ObstaclePose pose_of(const Obstacle& obstacle, double t);
 
-// Distance to the surface, negative inside, with the direction in which it grows and its second derivative.
-// All shapes are convex, so the distance is a convex function and the curvature positive semi-definite.
-struct Distance {
-  double value = 0;  // [m]
-  Vec3 normal{};     // unit vector
-  Mat3 curvature;    // [1/m]
-};
+// The distance to a convex shape is a convex function: its curvature is positive semi-definite.
+bool is_solid(const Obstacle& shape);  // a mesh or a distance field
+bool is_convex(const Obstacle& shape);
 Distance distance_to(const Obstacle& shape, const Vec3& y);  // y in the obstacle's own axes
 double distance_value(const Obstacle& shape, const Vec3& y);
 

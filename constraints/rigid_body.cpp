@@ -1,9 +1,12 @@
 // A free rigid body: four points of equal mass that keep their six distances.
 #include "constraints/rigid_body.h"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 
+#include "constraints/closed_surface.h"
+#include "constraints/moved_solid.h"
 #include "constraints/segment_pool.h"
 
 namespace isochor {
@@ -35,6 +38,11 @@ Mass mass_of(const Obstacle& s) {
     case ObstacleShape::box:
       return {s.size.x * s.size.y * s.size.z,
               {s.size.x * s.size.x / 12, s.size.y * s.size.y / 12, s.size.z * s.size.z / 12}};
+    case ObstacleShape::mesh:
+    case ObstacleShape::distance_field: {
+      const SolidMoments m = moments_of(s.solid->outline());
+      return {m.volume, {m.second[0], m.second[1], m.second[2]}};
+    }
   }
   return {};
 }
@@ -106,10 +114,14 @@ class RigidBodyEffect final : public EffectSource {
   Result<void> check() const override {
     if (auto r = check_obstacle(def_.shape); !r) return Error{who() + r.error()};
     if (def_.shape.shape == ObstacleShape::plane) {
-      return Error{who() + "a plane has no end and no mass; take a sphere, capsule, cylinder or box"};
+      return Error{who() + "a plane has no end and no mass; take any other shape"};
     }
     if (!def_.shape.motion.keys.empty()) {
       return Error{who() + "a free body moves by forces; leave its motion out, or make it an obstacle"};
+    }
+    if (is_solid(def_.shape) && def_.shape.rounding > 0) {
+      return Error{who() + "rounding = " + std::to_string(def_.shape.rounding) +
+                   " m would add a mass that its surface does not show; leave it at 0"};
     }
     if (!(def_.density > 0) || !std::isfinite(def_.density)) {
       return Error{who() + "density = " + std::to_string(def_.density) + " kg/m^3; it must be positive"};
@@ -127,10 +139,11 @@ class RigidBodyEffect final : public EffectSource {
     if (shared->by_name.count(def_.name) > 0) {
       return Error{who() + "another rigid body has this name; names must differ"};
     }
-    const Mass mass = mass_of(def_.shape);
-    RigidShape body{def_.shape, {}};
+    const Obstacle shape = principal_form(def_.shape);
+    const Mass mass = mass_of(shape);
+    RigidShape body{shape, {}};
     for (int k = 0; k < 3; ++k) body.points.radius[k] = std::sqrt(mass.square[k]);
-    const ObstaclePose pose = pose_of(def_.shape, 0);
+    const ObstaclePose pose = pose_of(shape, 0);
     for (std::size_t a = 0; a < 4; ++a) {
       body.points.node[a] =
           builder.add_point(pose.to_world(body.points.own(a)), 0.25 * def_.density * mass.volume);
@@ -166,6 +179,27 @@ class RigidBodyEffect final : public EffectSource {
 
 }  // namespace
 
+Obstacle principal_form(const Obstacle& shape) {
+  if (!is_solid(shape)) return shape;
+  const SolidMoments m = moments_of(shape.solid->outline());
+  Eigen::Matrix3d second;
+  second << m.second[0], m.second[3], m.second[4], m.second[3], m.second[1], m.second[5], m.second[4],
+      m.second[5], m.second[2];
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(second);
+  const auto axis = [&](int k) {
+    return Vec3{solver.eigenvectors()(0, k), solver.eigenvectors()(1, k), solver.eigenvectors()(2, k)};
+  };
+  const Vec3 x = axis(0), y = axis(1), z = cross(x, y);
+  const Mat3 R{{x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z}};
+  const ObstaclePose pose = pose_of(shape, 0);
+  Obstacle out = shape;
+  out.solid = std::make_shared<MovedSolid>(shape.solid, m.middle, R);
+  out.position = pose.to_world(m.middle);
+  out.axis = pose.R * z;
+  out.side = pose.R * x;
+  return out;
+}
+
 Result<RigidShape> find_rigid(Builder& builder, const std::string& name, const std::string& who) {
   const auto shared = builder.shared<RigidBodies>(kRigidBodies);
   const auto found = shared->by_name.find(name);
@@ -187,6 +221,9 @@ std::vector<TouchPoint> touch_points(const Obstacle& s) {
       for (int i = 0; i < 3; ++i) y[i] = ((k >> i) & 1 ? 1 : -1) * (0.5 * s.size[i] - s.rounding);
       out.push_back({y, s.rounding});
     }
+  }
+  if (is_solid(s)) {
+    for (const Vec3& p : s.solid->outline().points) out.push_back({p, 0});
   }
   if (s.shape == ObstacleShape::cylinder) {
     constexpr int around = 12;

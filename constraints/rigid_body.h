@@ -14,6 +14,9 @@ struct RigidBodies {
 };
 inline constexpr const char* kRigidBodies = "rigid bodies";
 
+// The shape in its principal axes about its center of mass: as it is, but for meshes and distance fields.
+Obstacle principal_form(const Obstacle& shape);
+
 Result<RigidShape> find_rigid(Builder& builder, const std::string& name, const std::string& who);
 
 // Points by which a shape touches others, in its own axes, and how far they keep away.

@@ -2,21 +2,13 @@
 #pragma once
 
 #include "isochor/lattice.h"
+#include "isochor/solids.h"
 #include "scenes/scene.h"
 
 namespace isochor {
 
 // `folder`: where relative paths start.
 std::string path_in(const std::string& folder, const std::string& file);
-
-// A triangle surface from a Wavefront file (.obj), or the boundary of a volume mesh of any kind that is read.
-struct TriangleSurface {
-  std::vector<Vec3> points;      // [m], as in the file
-  std::vector<Index> triangles;  // three points each, counterclockwise seen from outside
-};
-Result<TriangleSurface> read_surface(const std::string& path);
-// Faces of cells that no other cell shares, cut into triangles; corners only.
-TriangleSurface boundary_of(const Mesh& mesh);
 
 // The lattice of a body, with the surface that is shown in its place.
 struct LatticeBody {

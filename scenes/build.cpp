@@ -4,6 +4,7 @@
 #include "isochor/mesh_io.h"
 #include "isochor/schemes.h"
 #include "scenes/body_parts.h"
+#include "scenes/obstacle_files.h"
 
 namespace isochor {
 
@@ -126,7 +127,14 @@ Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, Bui
   for (const auto& def : scene.windings) add(winding(def));
   for (const auto& def : scene.layers) add(strain_limit(def));
   for (const auto& def : scene.ties) add(tie(def));
-  for (const auto& def : scene.rigid_bodies) add(rigid_body(def));
+  SolidFiles solids(scene.folder);
+  for (std::size_t r = 0; r < scene.rigid_bodies.size(); ++r) {
+    RigidBodyDef def = scene.rigid_bodies[r];
+    if (auto loaded = solids.load(def.shape); !loaded)
+      return Error{place("rigid_bodies", r) + ".shape: " + loaded.error()};
+    built.rigid_shapes.push_back(def.shape);
+    add(rigid_body(def));
+  }
   // After all supports: what they hold wholly has no contact.
   for (std::size_t c = 0; c < scene.contacts.size(); ++c) {
     ContactDef def = scene.contacts[c];
@@ -136,6 +144,9 @@ Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, Bui
       if (!track) return Error{place("contacts", c) + ".obstacle.motion: " + track.error()};
       motion = std::move(track).value();
     }
+    if (auto loaded = solids.load(def.obstacle); !loaded)
+      return Error{place("contacts", c) + ".obstacle: " + loaded.error()};
+    built.obstacles.push_back(def.obstacle);
     add(contact(def));
   }
   if (!error.empty()) return Error{error};

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "constraints/obstacle_shape.h"
+#include "constraints/rigid_body.h"
 
 namespace isochor {
 
@@ -86,6 +87,11 @@ Triangles triangles_of(const Obstacle& o, double size) {
       t.corners = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                    2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
       break;
+    case ObstacleShape::mesh:
+    case ObstacleShape::distance_field: {
+      TriangleSurface s = o.solid->outline();
+      return {std::move(s.points), std::move(s.triangles)};
+    }
   }
   return t;
 }
@@ -123,14 +129,6 @@ Place place_of(const Obstacle& shape, const std::string& rigid, const StepRecord
   p.pose.position = {gauge(record, rigid, "x"), gauge(record, rigid, "y"), gauge(record, rigid, "z")};
   p.turn = {gauge(record, rigid, "turn_x"), gauge(record, rigid, "turn_y"), gauge(record, rigid, "turn_z")};
   return p;
-}
-
-// What a contact touches: its own obstacle, or a free rigid body.
-std::pair<const Obstacle*, std::string> touched(const SceneDef& scene, const ContactDef& c) {
-  for (const RigidBodyDef& r : scene.rigid_bodies) {
-    if (!c.against.empty() && r.name == c.against) return {&r.shape, r.name};
-  }
-  return {&c.obstacle, ""};
 }
 
 // Nodes of the surfaces named; of the whole mesh where none is (what is inside is not near an obstacle).
@@ -183,7 +181,7 @@ std::size_t number_of(std::vector<std::string>& names, const std::string& name) 
 
 void RunOverlays::add_solid(const Obstacle& shape, const std::string& name, const std::string& rigid,
                             PageScene& scene) {
-  Solid solid{&shape, rigid, {}};
+  Shown solid{shape, rigid, {}};
   // A plane lies below the bodies, wherever its own origin is.
   Triangles t = triangles_of(shape, 0.75 * extent_);
   if (shape.shape == ObstacleShape::plane) {
@@ -277,9 +275,19 @@ void RunOverlays::start(const RunView& view, PageScene& scene,
   middle_ = 0.5 * (low + high);
   extent_ = std::sqrt(dot(high - low, high - low));
   const SceneDef& s = view.scene;
-  for (const RigidBodyDef& r : s.rigid_bodies) add_solid(r.shape, r.name, r.name, scene);
-  for (const ContactDef& c : s.contacts) {
-    if (c.against.empty()) add_solid(c.obstacle, c.name, "", scene);
+  for (std::size_t r = 0; r < s.rigid_bodies.size(); ++r)
+    add_solid(principal_form(view.built.rigid_shapes[r]), s.rigid_bodies[r].name, s.rigid_bodies[r].name,
+              scene);
+  for (std::size_t c = 0; c < s.contacts.size(); ++c) {
+    const ContactDef& def = s.contacts[c];
+    touched_.push_back(solids_.size());
+    if (def.against.empty()) {
+      add_solid(view.built.obstacles[c], def.name, "", scene);
+      continue;
+    }
+    for (std::size_t r = 0; r < s.rigid_bodies.size(); ++r) {
+      if (s.rigid_bodies[r].name == def.against) touched_.back() = r;
+    }
   }
   for (const CableDef& c : s.cables) add_path(view, c.body, c.points, scene, c.name, c.from, c.to);
   for (const WindingDef& w : s.windings) {
@@ -291,8 +299,8 @@ void RunOverlays::start(const RunView& view, PageScene& scene,
 void RunOverlays::append(const RunView& view, PageFrame& frame) const {
   const StepRecord& record = view.result.records.back();
   const World& world = view.built.world;
-  for (const Solid& solid : solids_) {
-    const Place place = place_of(*solid.shape, solid.rigid, record);
+  for (const Shown& solid : solids_) {
+    const Place place = place_of(solid.shape, solid.rigid, record);
     for (const Vec3& y : solid.points) {
       frame.positions.push_back(place.to_world(y));
       for (auto& field : frame.fields) field.push_back(0);
@@ -309,15 +317,16 @@ void RunOverlays::append(const RunView& view, PageFrame& frame) const {
   }
   // Hard contacts meet their obstacle to the tolerance of the rows, soft ones sink into it.
   const double touching = 1e-5 * extent_;
-  for (const ContactDef& c : view.scene.contacts) {
+  for (std::size_t k = 0; k < view.scene.contacts.size(); ++k) {
+    const ContactDef& c = view.scene.contacts[k];
     if (!c.rigid.empty()) continue;
-    const auto [shape, rigid] = touched(view.scene, c);
-    const Place place = place_of(*shape, rigid, record);
+    const Shown& solid = solids_[touched_[k]];
+    const Place place = place_of(solid.shape, solid.rigid, record);
     const BodyId id = view.built.bodies[static_cast<std::size_t>(c.body)];
     const auto x = world.positions(id);
     for (const Index n : contact_nodes(world.mesh(id), c.surfaces)) {
       const Vec3& p = x[static_cast<std::size_t>(n)];
-      if (distance_value(*shape, place.to_own(p)) <= touching) frame.contacts.push_back(p);
+      if (distance_value(solid.shape, place.to_own(p)) <= touching) frame.contacts.push_back(p);
     }
   }
 }

@@ -19,8 +19,8 @@ class RunOverlays {
   void append(const RunView& view, PageFrame& frame) const;
 
  private:
-  struct Solid {
-    const Obstacle* shape = nullptr;
+  struct Shown {
+    Obstacle shape;
     std::string rigid;         // name of a free body; empty: it moves as its obstacle says
     std::vector<Vec3> points;  // in its own axes
   };
@@ -35,9 +35,10 @@ class RunOverlays {
                 const std::string& name, std::optional<Vec3> from, std::optional<Vec3> to);
   void add_maps(const RunView& view, PageScene& scene, const std::vector<std::vector<Index>>& triangle_cell);
 
-  Vec3 middle_{};      // of all bodies at rest
-  double extent_ = 0;  // diagonal of their box
-  std::vector<Solid> solids_;
+  Vec3 middle_{};                     // of all bodies at rest
+  double extent_ = 0;                 // diagonal of their box
+  std::vector<Shown> solids_;         // of rigid bodies, then of contacts
+  std::vector<std::size_t> touched_;  // by contact, the solid that it touches
   std::vector<Path> paths_;
   std::vector<std::vector<double>> maps_;  // values of the per-triangle fields, which do not change
 };

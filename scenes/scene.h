@@ -227,6 +227,8 @@ struct BuiltScene {
   std::vector<BodyId> bodies;
   std::vector<EffectId> dirichlet, cavities, tractions, forces, cables, valves;
   std::vector<DisplaySurface> surfaces = {};  // by body; empty where its mesh is shown
+  std::vector<Obstacle> obstacles = {};       // by contact, with what their files hold
+  std::vector<Obstacle> rigid_shapes = {};    // by rigid body, likewise
 };
 
 // What build() hands to the world.

@@ -5,28 +5,40 @@
 #include <array>
 
 #include "isochor/poses.h"
+#include "isochor/solids.h"
 #include "isochor/world.h"
 
 namespace isochor {
 
 enum class ObstacleShape : std::uint8_t {
-  plane,     // solid below its own x-y plane
-  sphere,    // radius
-  capsule,   // radius around a segment of `length` along its own z axis
-  cylinder,  // radius, `length` along its own z axis
-  box,       // edges `size` along its own axes
+  plane,           // solid below its own x-y plane
+  sphere,          // radius
+  capsule,         // radius around a segment of `length` along its own z axis
+  cylinder,        // radius, `length` along its own z axis
+  box,             // edges `size` along its own axes
+  mesh,            // a closed triangle surface: `solid` from mesh_solid()
+  distance_field,  // distances on a grid: `solid` from field_solid()
 };
 
 // A rigid body that is where it is told to be.
 struct Obstacle {
   ObstacleShape shape = ObstacleShape::plane;
-  Vec3 position{};      // of its own origin, the middle of the shape [m]
-  Vec3 axis{0, 0, 1};   // direction of its own z axis: normal of a plane, axis of a capsule or cylinder
-  Vec3 side{1, 0, 0};   // its own x axis, as far as it is perpendicular to `axis`
-  double radius = 0;    // [m]
-  double length = 0;    // [m], of a capsule between the middles of its ends
-  Vec3 size{};          // [m], full edges of a box
-  double rounding = 0;  // [m], radius of the edges of cylinders and boxes, inside the size given
+  Vec3 position{};     // of its own origin, the middle of the shape [m]
+  Vec3 axis{0, 0, 1};  // direction of its own z axis: normal of a plane, axis of a capsule or cylinder
+  Vec3 side{1, 0, 0};  // its own x axis, as far as it is perpendicular to `axis`
+  double radius = 0;   // [m]
+  double length = 0;   // [m], of a capsule between the middles of its ends
+  Vec3 size{};         // [m], full edges of a box
+  // [m]: radius of the edges of cylinders and boxes, inside the size given. Meshes and distance fields grow
+  // by it on all sides.
+  double rounding = 0;
+  // Of a mesh or a distance field, in its own axes.
+  SolidPtr solid;
+  // Only scene files use these: where the solid is read from, what its coordinates are multiplied by, and for
+  // a distance field made from a surface the spacing of its points [m].
+  std::string file;
+  double scale = 1;
+  double spacing = 0;
   // Moves it; at the first keyframe it is as described above. Empty: it rests.
   PoseTrack motion;
 };
@@ -40,7 +52,7 @@ enum class InitialOverlap : std::uint8_t {
 // A rigid body that moves by the forces on it; dynamics only. It touches what contacts with its name say.
 struct RigidBodyDef {
   std::string name = "rigid";
-  Obstacle shape;         // sphere, capsule, cylinder or box, where it is at rest; no motion of its own
+  Obstacle shape;         // any but a plane, where it is at rest; no motion of its own
   double density = 1000;  // [kg/m^3]
 };
 EffectPtr rigid_body(RigidBodyDef def);
@@ -54,7 +66,7 @@ struct ContactDef {
   Obstacle obstacle;
   // Names of free rigid bodies that were added before: one in place of `body`, one in place of `obstacle`. A
   // rigid body touches with points of its shape: a sphere and the round ends of a capsule exactly, boxes and
-  // cylinders with their corners and rims.
+  // cylinders with their corners and rims, meshes with their points.
   std::string rigid, against;
   double compliance = 0;  // [m/Pa]: depth over pressure of a soft layer; 0: hard
   double friction = 0;    // coefficient of Coulomb friction [-]

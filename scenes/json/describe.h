@@ -237,6 +237,9 @@ void describe(Io& io, Obstacle& o) {
   io.number("length", o.length, 0.0);
   io.vector("size", o.size, Vec3{});
   io.number("rounding", o.rounding, 0.0);
+  io.text("file", o.file);
+  io.number("scale", o.scale, 1.0);
+  io.number("spacing", o.spacing, 0.0);
   io.text("motion", o.motion.file);
   io.list("keyframes", o.motion.keys);
 }

@@ -60,9 +60,10 @@ ISOCHOR_WORDS(Solver, 5, {Solver::automatic, "automatic"}, {Solver::mumps, "mump
               {Solver::cholmod, "cholmod"}, {Solver::eigen, "eigen"}, {Solver::iterative, "iterative"});
 ISOCHOR_WORDS(Component, 4, {Component::magnitude, "magnitude"}, {Component::x, "x"}, {Component::y, "y"},
               {Component::z, "z"});
-ISOCHOR_WORDS(ObstacleShape, 5, {ObstacleShape::plane, "plane"}, {ObstacleShape::sphere, "sphere"},
+ISOCHOR_WORDS(ObstacleShape, 7, {ObstacleShape::plane, "plane"}, {ObstacleShape::sphere, "sphere"},
               {ObstacleShape::capsule, "capsule"}, {ObstacleShape::cylinder, "cylinder"},
-              {ObstacleShape::box, "box"});
+              {ObstacleShape::box, "box"}, {ObstacleShape::mesh, "mesh"},
+              {ObstacleShape::distance_field, "distance_field"});
 ISOCHOR_WORDS(InitialOverlap, 2, {InitialOverlap::report, "report"}, {InitialOverlap::resolve, "resolve"});
 ISOCHOR_WORDS(Quantity, 21, {Quantity::displacement, "displacement"},
               {Quantity::cavity_pressure, "cavity_pressure"}, {Quantity::cavity_volume, "cavity_volume"},

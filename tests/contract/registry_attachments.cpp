@@ -1,5 +1,6 @@
 // Supports by rows, ties, cables, threads, chambers with content.
 #include "contract/registry.h"
+#include "engine/mesh/boundary.h"
 #include "isochor/contact.h"
 #include "support/meshes.h"
 
@@ -129,9 +130,22 @@ void add_chambers(std::vector<SceneCase>& out, Element element) {
   }
 }
 
+// A block with a step, so that it is not convex, or distances to it.
+SolidPtr step_solid(ObstacleShape shape, double size) {
+  TriangleSurface s = boundary_of(without_cells(box({2, 1, 2}), {0.5, -1, 0.5}, {2, 2, 2}, "step"));
+  for (Vec3& p : s.points) p = size * (p - Vec3{0.5, 0.5, 0.5});
+  if (shape == ObstacleShape::mesh) return std::move(mesh_solid(s)).value();
+  return std::move(field_solid(std::move(sampled_distances(s, 0.13 * size)).value())).value();
+}
+
+bool is_solid(ObstacleShape shape) {
+  return shape == ObstacleShape::mesh || shape == ObstacleShape::distance_field;
+}
+
 void add_contacts(std::vector<SceneCase>& out, Element element) {
-  for (const auto shape : {ObstacleShape::plane, ObstacleShape::sphere, ObstacleShape::capsule,
-                           ObstacleShape::cylinder, ObstacleShape::box}) {
+  for (const auto shape :
+       {ObstacleShape::plane, ObstacleShape::sphere, ObstacleShape::capsule, ObstacleShape::cylinder,
+        ObstacleShape::box, ObstacleShape::mesh, ObstacleShape::distance_field}) {
     ContactDef def;
     def.obstacle.shape = shape;
     def.obstacle.position = {0.2, 0.3, -1.7};
@@ -140,21 +154,24 @@ void add_contacts(std::vector<SceneCase>& out, Element element) {
     def.obstacle.length = 0.7;
     def.obstacle.size = {0.9, 0.7, 0.5};
     if (shape == ObstacleShape::box) def.obstacle.rounding = 0.05;
+    if (is_solid(shape)) def.obstacle.solid = step_solid(shape, 0.8);
     def.obstacle.motion.keys = {{0, {0, 0, 0}, {1, 0, 0, 0}}, {1, {0.1, 0, 0.05}, {0.8, 0, 0.6, 0}}};
     def.friction = 0.3;
     if (shape == ObstacleShape::sphere) def.compliance = 1e-3;
-    SceneCase c = on_block("contact, shape " + std::to_string(static_cast<int>(shape)), element,
-                           {"constraints/contact", "constraints/contact_pool", "constraints/contact_frame",
-                            "constraints/obstacle_shape", "constraints/surface_nodes"},
-                           contact(def));
+    SceneCase c =
+        on_block("contact, shape " + std::to_string(static_cast<int>(shape)), element,
+                 {"constraints/contact", "constraints/contact_pool", "constraints/contact_frame",
+                  "constraints/obstacle_shape", "constraints/surface_nodes", "constraints/solid",
+                  "constraints/mesh_solid", "constraints/closed_surface", "constraints/field_solid"},
+                 contact(def));
     c.stress_free = c.rigid_invariant = false;  // distances to something that does not move with the body
     out.push_back(c);
   }
 }
 
 void add_rigid_bodies(std::vector<SceneCase>& out, Element element) {
-  for (const auto shape :
-       {ObstacleShape::sphere, ObstacleShape::capsule, ObstacleShape::cylinder, ObstacleShape::box}) {
+  for (const auto shape : {ObstacleShape::sphere, ObstacleShape::capsule, ObstacleShape::cylinder,
+                           ObstacleShape::box, ObstacleShape::mesh, ObstacleShape::distance_field}) {
     RigidBodyDef thing;
     thing.name = "thing";
     thing.shape.shape = shape;
@@ -164,12 +181,15 @@ void add_rigid_bodies(std::vector<SceneCase>& out, Element element) {
     thing.shape.length = 0.7;
     thing.shape.size = {0.9, 0.7, 0.5};
     if (shape == ObstacleShape::box) thing.shape.rounding = 0.05;
+    if (is_solid(shape)) thing.shape.solid = step_solid(shape, 0.8);
     ContactDef touch;
     touch.against = "thing";
     touch.friction = 0.3;
-    SceneCase c = on_block(
-        "contact with a rigid body, shape " + std::to_string(static_cast<int>(shape)), element,
-        {"constraints/contact", "constraints/contact_frame", "constraints/rigid_body"}, rigid_body(thing));
+    SceneCase c =
+        on_block("contact with a rigid body, shape " + std::to_string(static_cast<int>(shape)), element,
+                 {"constraints/contact", "constraints/contact_frame", "constraints/rigid_body",
+                  "constraints/moved_solid"},
+                 rigid_body(thing));
     c.effects.push_back(contact(touch));
     c.stress_free = false;  // distances between bodies that are apart
     out.push_back(c);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "catch.h"
+#include "engine/mesh/boundary.h"
 #include "isochor/generate.h"
 #include "small_scene.h"
 
