@@ -227,7 +227,6 @@ StepReport World::advance(double h) {
   const double t0 = w.state.t, t_end = t0 + h;
   w.begin_amounts(t0, t_end);
   StepReport report;
-  constexpr int patience = 40, patience_for_factors = 70;
   constexpr double largest_turn = 2;  // [rad] an increment
   const bool statics = !w.options.scheme->has_inertia(), careful = w.controls_error();
   double increment = h;
@@ -239,9 +238,10 @@ StepReport World::advance(double h) {
     double dt = increment > 0.999 * remaining ? remaining : increment;
     // The end of half a turn is that of half a turn the other way.
     while (w.largest_turn(w.state.t, w.state.t + dt) > largest_turn && dt > 1e-9 * h) dt *= 0.5;
-    // What converges at all does so in a dozen iterations; while the increment can still be cut, more are
-    // wasted.
+    // While the increment can still be cut, patience has an end; less of it where the whole one failed
+    // already.
     const bool last_chance = 0.5 * dt < w.options.smallest_fraction * h;
+    const int patience = successes > 0 ? 40 : 25, patience_for_factors = successes > 0 ? 70 : 35;
     if (careful) w.state_before = w.state;
     const SaddleReport r = w.attempt(
         dt, last_chance
