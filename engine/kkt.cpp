@@ -7,6 +7,9 @@
 
 namespace isochor {
 
+// In place of the compliance of a condensed row that is held at a bound.
+static constexpr double kHeld = 0;
+
 namespace {
 
 double now() {
@@ -114,8 +117,8 @@ void Kkt::scale_unknowns(const Values& values) {
   }
 }
 
-// K += G_r^T G_r / C_r for every condensed row and G_r^T W_r G_r for every augmented one, in the order of the
-// rows.
+// K += G_r^T G_r / C_r for every condensed row that is not held at a bound and G_r^T W_r G_r for every
+// augmented one, in the order of the rows.
 void Kkt::add_filled(const Values& values) {
   const System& s = *system_;
   const auto first = s.first_unknown();
@@ -123,9 +126,11 @@ void Kkt::add_filled(const Values& values) {
   for (std::size_t k = 0; k < s.filled_rows().size(); ++k) {
     const Index row = s.filled_rows()[k];
     const bool condensed = k < s.condensed_rows().size();
-    const double weight =
+    const bool held = condensed && !values.clamped.empty() && values.clamped[at(row)] != 0;
+    double weight =
         condensed ? 1 / compliance_of(values, s.diagonal_compliance()[at(row)]) : weight_[at(row)];
-    if (condensed) condensed_compliance_[k] = 1 / weight;
+    if (condensed) condensed_compliance_[k] = held ? kHeld : 1 / weight;
+    if (held) weight = 0;
     const auto begin = s.row_jacobian_begin()[at(row)], end = s.row_jacobian_begin()[at(row) + 1];
     for (std::size_t a = begin; a < end; ++a) {
       const Index i = s.jacobian_ends()[a][1], ki = first[at(i) + 1] - first[at(i)];
@@ -379,6 +384,8 @@ bool Kkt::solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs,
   residual_ = 0;
   // G dx - C dlambda = g: dlambda = (G dx - g) / C, so G^T g / C joins the right-hand side of the nodes.
   for (std::size_t k = 0; k < condensed.size(); ++k) {
+    // Of a row held at a bound -D dlambda = g is left, as in the matrix.
+    if (condensed_compliance_[k] == kHeld) continue;
     condensed_part_[k] = row_rhs[at(condensed[k])] / condensed_compliance_[k];
     add_row_force(condensed[k], condensed_part_[k]);
   }
@@ -387,6 +394,10 @@ bool Kkt::solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs,
   for (std::size_t j = 0; j < bordered.size(); ++j) dlambda[at(bordered[j])] = border_value_[j];
   for (const Index r : s.dual_rows()) dlambda[at(r)] = cg_x_[at(r)];
   for (std::size_t k = 0; k < condensed.size(); ++k) {
+    if (condensed_compliance_[k] == kHeld) {
+      dlambda[at(condensed[k])] = -row_rhs[at(condensed[k])] / s.row_metric()[at(condensed[k])];
+      continue;
+    }
     const double sum = row_dot(condensed[k], solution_);
     dlambda[at(condensed[k])] = sum / condensed_compliance_[k] - condensed_part_[k];
   }

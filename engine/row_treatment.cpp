@@ -4,6 +4,10 @@
 
 namespace isochor {
 
+static bool bounded(const RowPool& pool) {
+  return !pool.lower.empty() || !pool.upper.empty();
+}
+
 // A pool that is left to us is condensed when that fills no new place and loses no digits: every row lies
 // within one stencil and has a compliance of its own that is not tiny. Everything else is kept; the
 // ordering puts rows over everything last, which costs what a border does.
@@ -14,22 +18,17 @@ RowTreatment RowTreatments::choose(const RowPool& pool) const {
     case RowTreatment::automatic:
       break;
     case RowTreatment::condensed:
-      if (pool.lower.empty() && pool.upper.empty()) {
-        if (few_wide_rows(pool)) return RowTreatment::bordered;
-        if (check_condensed(pool, "")) return RowTreatment::condensed;
-      }
-      return RowTreatment::saddle;
+      if (!bounded(pool) && few_wide_rows(pool)) return RowTreatment::bordered;
+      return check_condensed(pool, "") ? RowTreatment::condensed : RowTreatment::saddle;
     case RowTreatment::dual:
     case RowTreatment::augmented:
       if (!system_.parts_.border_wide_rows || !few_wide_rows(pool)) return system_.parts_.treatment;
-      return pool.lower.empty() && pool.upper.empty() ? RowTreatment::bordered : RowTreatment::dual;
+      return bounded(pool) ? RowTreatment::dual : RowTreatment::bordered;
     case RowTreatment::saddle:
     case RowTreatment::bordered:
       return RowTreatment::saddle;
   }
-  if (pool.rows() == 0 || !pool.lower.empty() || !pool.upper.empty() || !check_condensed(pool, "")) {
-    return RowTreatment::saddle;
-  }
+  if (pool.rows() == 0 || !check_condensed(pool, "")) return RowTreatment::saddle;
   const Index functions = system_.parts_.stencil_pools[at(pool.stencil_pool)]->functions();
   for (Index r = 0; r < pool.rows(); ++r) {
     for (const Index f : pool.map[r]) {
@@ -82,11 +81,10 @@ Result<void> RowTreatments::sort() {
     const RowPool& pool = *system_.parts_.row_pools[p];
     if (pool.law != RowLaw::compliant) continue;
     const std::string who = "rows \"" + std::string(pool.name()) + "\": ";
-    const bool out = pool.treatment == RowTreatment::condensed || pool.treatment == RowTreatment::bordered;
-    if (out && (!pool.lower.empty() || !pool.upper.empty())) {
+    if (pool.treatment == RowTreatment::bordered && bounded(pool)) {
       return Error{who +
-                   "rows with bounds change between free and held, so they stay in the saddle point; use "
-                   "treatment saddle or automatic"};
+                   "rows with bounds change between free and held, so they are not bordered; use treatment "
+                   "saddle or automatic"};
     }
     if (pool.treatment == RowTreatment::condensed) {
       if (auto r = check_condensed(pool, who); !r) return r;
