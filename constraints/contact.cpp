@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "constraints/contact_pool.h"
+#include "constraints/contact_rows.h"
 #include "constraints/embedding.h"
 #include "constraints/rigid_body.h"
 #include "constraints/surface_nodes.h"
@@ -19,25 +20,6 @@ std::string number(double v) {
   std::snprintf(text, sizeof text, "%.6g", v);
   return text;
 }
-
-// One row a node: gap - target - C multiplier = 0 with multiplier <= 0, C the compliance over the node's
-// area.
-class ContactRows final : public RowPool {
- public:
-  explicit ContactRows(std::string name, double resolve_time)
-      : name_(std::move(name)), resolve_time_(resolve_time) {}
-  std::string_view name() const override { return name_; }
-  void update(double t, std::span<double> value) const override {
-    const double left = std::max(0.0, 1 - t / resolve_time_);
-    for (std::size_t r = 0; r < value.size(); ++r) value[r] = overlap.empty() ? 0 : left * overlap[r];
-  }
-  std::vector<double> area;     // [m^2]
-  std::vector<double> overlap;  // gap at the start where it is below zero, else zero [m]; empty: none is
-
- private:
-  std::string name_;
-  double resolve_time_;
-};
 
 class ContactInstance final : public EffectInstance {
  public:
@@ -124,8 +106,6 @@ class ContactEffect final : public EffectSource {
       return Error{r.error()};
     }
     pool->finish();
-    rows->lower.assign(rows->area.size(), -std::numeric_limits<double>::infinity());
-    rows->upper.assign(rows->area.size(), 0.0);
     if (auto r = find_overlap(builder, *pool, *rows); !r) return Error{r.error()};
     rows->stencil_pool = builder.add_stencils(pool);
     const Index row_pool = builder.add_rows(rows);
@@ -135,15 +115,6 @@ class ContactEffect final : public EffectSource {
  private:
   std::string who() const { return "contact \"" + def_.name + "\": "; }
 
-  void add_row(ContactRows& rows, double mu, double area, double length) const {
-    const Index row = rows.rows();
-    rows.map.push({&row, 1});
-    rows.weight.push_back(1);
-    rows.area.push_back(area);
-    rows.metric.push_back(1 / (mu * std::sqrt(area)));
-    rows.measure.push_back(length);
-    if (def_.compliance > 0) rows.compliance.push_back({row, row, def_.compliance / area});
-  }
   double stick(double mu, double area) const {
     return def_.stick_stiffness > 0 ? def_.stick_stiffness * area : 100 * mu * std::sqrt(area);
   }
@@ -158,7 +129,7 @@ class ContactEffect final : public EffectSource {
     for (const auto& [node, area] : surface_nodes(faces.value(), per, builder.rest())) {
       if (builder.given_directions(node) == 3) continue;  // goes where it is told to
       pool.add(node, stick(mu, area));
-      add_row(rows, mu, area, builder.length());
+      rows.add(mu, area, builder.length(), def_.compliance);
     }
     if (rows.rows() > 0) return {};
     return Error{who() + "all nodes of its surfaces are held by supports; take surfaces that can move"};
@@ -177,7 +148,7 @@ class ContactEffect final : public EffectSource {
     const double area = extent * extent / static_cast<double>(touches.size());
     for (const TouchPoint& t : touches) {
       pool.add(rigid.value().points, t.own, t.offset, stick(mu, area));
-      add_row(rows, mu, area, builder.length());
+      rows.add(mu, area, builder.length(), def_.compliance);
     }
     return {};
   }

@@ -110,22 +110,24 @@ ContactPool::Frames ContactPool::frames(const StencilRequest& q) const {
 // there is no slip, and what is left is the pull that the last step ended with.
 ContactPool::Friction ContactPool::friction(const StencilRequest& q, const Frames& frames, Index s) const {
   Friction f;
+  f.spring.stiffness = stick_[at(s)];
   const bool remembers = !q.memory.empty();
   const double* m = remembers ? q.memory.data() + 3 * at(s) : nullptr;
   const Vec3 kept = remembers ? frames.lag.A * Vec3{m[0], m[1], m[2]} : Vec3{};
   if (q.lag.x.empty()) {
-    f.limit = norm(kept);
-    f.z = (1 / stick_[at(s)]) * kept;
+    f.spring.limit = norm(kept);
+    f.spring.z = (1 / stick_[at(s)]) * kept;
     return f;
   }
   const auto nodes = nodes_[s];
-  f.limit = friction_ * std::max(0.0, -q.lag.function_multiplier[at(s)]);
+  f.spring.limit = friction_ * std::max(0.0, -q.lag.function_multiplier[at(s)]);
   const Vec3 own = frames.lag.to_own(point(s, q.lag.x));
   const Vec3 slope = distance_to(shape_, own).normal;
-  f.normal = transposed_times(frames.lag.inverse, slope);
+  Vec3& normal = f.spring.normal;
+  normal = transposed_times(frames.lag.inverse, slope);
   // Fields may be flat where they are far from the surface.
-  const double steepness = norm(f.normal);
-  f.normal = steepness > 0 ? (1 / steepness) * f.normal : Vec3{0, 0, 1};
+  const double steepness = norm(normal);
+  normal = steepness > 0 ? (1 / steepness) * normal : Vec3{0, 0, 1};
   // Where they touch: the surface of the shape below the point, and for a point that keeps away the place on
   // its own body.
   const Vec3 touch = own - offset_[at(s)] * slope;
@@ -142,14 +144,8 @@ ContactPool::Friction ContactPool::friction(const StencilRequest& q, const Frame
     }
     if (!points_) slip -= frames.now.to_world(touch) - frames.before.to_world(touch);
   }
-  f.z = tangential(slip + (1 / stick_[at(s)]) * kept, f.normal);
+  f.spring.z = tangential(slip + (1 / stick_[at(s)]) * kept, normal);
   return f;
-}
-
-Vec3 ContactPool::pull(Index s, const Friction& f) const {
-  const double stretch = norm(f.z);
-  if (stick_[at(s)] * stretch <= f.limit) return stick_[at(s)] * f.z;
-  return (f.limit / stretch) * f.z;
 }
 
 // multiplier times the second derivative of the gap. From A dy = dp - sum w_a dx_a, w_a affine in y, comes
@@ -200,21 +196,15 @@ void ContactPool::evaluate(const StencilRequest& q, const StencilSlots& slots) c
     slots.value[at(s)] = d.value - offset_[at(s)];
     slots.energy[at(s)] = 0;
     Friction f;
-    double stretch = 0, k = 0;
-    bool sticks = true;
     if (friction_ > 0) {
       f = friction(q, now, s);
-      k = stick_[at(s)];
-      stretch = norm(f.z);
-      sticks = k * stretch <= f.limit;
-      slots.energy[at(s)] =
-          sticks ? 0.5 * k * stretch * stretch : f.limit * stretch - 0.5 * f.limit * f.limit / k;
+      slots.energy[at(s)] = f.spring.energy();
     }
     if (q.want == Want::value) continue;
     const Vec3 normal = transposed_times(now.now.inverse, d.normal);
     const double multiplier = q.function_multiplier[at(s)];
     const auto c = weights(s, own);
-    const Vec3 force = slips ? pull(s, f) : Vec3{};
+    const Vec3 force = slips ? f.spring.pull() : Vec3{};
     for (std::size_t i = 0; i < n; ++i) {
       slots.jacobian[first + i] = c[i] * normal;
       slots.gradient[first + i] = multiplier * c[i] * normal + f.weight[i] * force;
@@ -223,13 +213,8 @@ void ContactPool::evaluate(const StencilRequest& q, const StencilSlots& slots) c
     Mat3* blocks = slots.hessian.data() + hessian_offset()[at(s)];
     std::fill_n(blocks, n * (n + 1) / 2, Mat3{});
     add_curvature(q, d, now.now, own, s, blocks);
-    if (!slips || !(f.limit > 0)) continue;
-    // Sticking: k in the tangent plane. Slipping: only across the direction of the slip.
-    const double stiffness = sticks ? k : f.limit / stretch;
-    Mat3 plane;
-    for (int i = 0; i < 3; ++i) plane(i, i) = stiffness;
-    add_outer(plane, -stiffness, f.normal, f.normal);
-    if (!sticks) add_outer(plane, -stiffness / (stretch * stretch), f.z, f.z);
+    if (!slips || !(f.spring.limit > 0)) continue;
+    const Mat3 plane = f.spring.curvature();
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j <= i; ++j) {
         for (std::size_t e = 0; e < 9; ++e)
@@ -242,7 +227,7 @@ void ContactPool::evaluate(const StencilRequest& q, const StencilSlots& slots) c
 void ContactPool::accept(const StencilRequest& q, std::span<double> memory) const {
   const Frames now = frames(q);
   for (Index s = 0; s < stencils(); ++s) {
-    const Vec3 f = now.now.inverse * pull(s, friction(q, now, s));
+    const Vec3 f = now.now.inverse * friction(q, now, s).spring.pull();
     for (int i = 0; i < 3; ++i) memory[3 * at(s) + static_cast<std::size_t>(i)] = f[i];
   }
 }

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "constraints/contact_frame.h"
+#include "constraints/friction_spring.h"
 #include "engine/pool.h"
 
 namespace isochor {
@@ -15,11 +16,9 @@ namespace isochor {
 // c_i of the nodes in the motion of the point relative to the shape,
 //   d gap/dx_i = c_i n,  n = A^-T grad d(y).
 //
-// Friction is an energy. With the normal force N, the tangent plane and the weights c_i held from the last
-// iteration, the slip u since the increment began and the pull f0 that the last step left, it is
-//   k/2 |z|^2 where k |z| <= mu N, else mu N |z| - (mu N)^2 / (2 k),   z = u + f0 / k,
-// convex and once differentiable in x; its gradient is the friction force, k z or mu N z/|z|. The pull is
-// kept between steps, so that what sticks does not creep.
+// Friction is the energy of friction_spring.h, its normal force, tangent plane and weights c_i those of the
+// last iteration: of the slip u since the increment began and the pull f0 that the last step left, z = u + f0
+// / k. The pull is kept between steps, so that what sticks does not creep.
 class ContactPool final : public StencilPool {
  public:
   // The pose of `shape` counts where there are no control points.
@@ -58,14 +57,12 @@ class ContactPool final : public StencilPool {
     ContactFrame before, now, lag;
   };
   struct Friction {
-    double limit = 0;  // mu N [N]
-    Vec3 normal{}, z{};
+    FrictionSpring spring;
     std::array<double, kMost> weight{};
   };
   Frames frames(const StencilRequest& request) const;
   std::array<double, kMost> weights(Index s, const Vec3& own) const;
   Friction friction(const StencilRequest& request, const Frames& frames, Index s) const;
-  Vec3 pull(Index s, const Friction& f) const;
   void add_curvature(const StencilRequest& request, const Distance& d, const ContactFrame& frame,
                      const Vec3& own, Index s, Mat3* blocks) const;
 

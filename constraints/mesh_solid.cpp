@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <numeric>
 
 #include "constraints/closed_surface.h"
+#include "constraints/triangle.h"
 
 namespace isochor {
 
@@ -26,20 +27,11 @@ void add_outer(Mat3& m, double s, const Vec3& a) {
   }
 }
 
-double square_to_box(const Vec3& y, const Vec3& low, const Vec3& high) {
-  double sum = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double d = std::max({low[k] - y[k], 0.0, y[k] - high[k]});
-    sum += d * d;
-  }
-  return sum;
-}
-
 // Whether the way from `start` by fractions 0 to 1 of `way` meets the box.
-bool meets_box(const Vec3& start, const Vec3& way, const Vec3& low, const Vec3& high, double skin) {
+bool meets_box(const Vec3& start, const Vec3& way, const Box& box, double skin) {
   double from = 0, to = 1;
   for (int k = 0; k < 3; ++k) {
-    const double a = low[k] - skin - start[k], b = high[k] + skin - start[k];
+    const double a = box.low[k] - skin - start[k], b = box.high[k] + skin - start[k];
     if (way[k] == 0) {
       if (a > 0 || b < 0) return false;
       continue;
@@ -51,8 +43,6 @@ bool meets_box(const Vec3& start, const Vec3& way, const Vec3& low, const Vec3& 
   return from <= to;
 }
 
-constexpr Index kLeaf = 4;            // triangles
-constexpr std::size_t kStack = 128;   // boxes waiting; the tree is halved, so its depth is far below
 constexpr double kOnSurface = 1e-10;  // of the extent: directions from the nearest point are noise
 constexpr double kSameWay = 5e-6;     // angle up to which two directions are one [rad]
 
@@ -74,39 +64,15 @@ Result<std::shared_ptr<const MeshSolid>> MeshSolid::make(const TriangleSurface& 
 }
 
 void MeshSolid::grow_tree() {
-  const auto count = static_cast<Index>(surface_.triangles.size() / 3);
-  order_.resize(at(count));
-  std::iota(order_.begin(), order_.end(), 0);
-  std::vector<Vec3> middle;
-  for (Index t = 0; t < count; ++t) middle.push_back(corner(t, 0) + corner(t, 1) + corner(t, 2));
-  tree_.push_back({{}, {}, 0, count, -1});
-  for (std::size_t b = 0; b < tree_.size(); ++b) {
-    Box box = tree_[b];
-    box.low = box.high = corner(order_[at(box.first)], 0);
-    for (Index i = box.first; i < box.first + box.count; ++i) {
-      for (int c = 0; c < 3; ++c) {
-        for (int k = 0; k < 3; ++k) {
-          box.low[k] = std::min(box.low[k], corner(order_[at(i)], c)[k]);
-          box.high[k] = std::max(box.high[k], corner(order_[at(i)], c)[k]);
-        }
-      }
-    }
-    if (box.count > kLeaf) {
-      const Vec3 size = box.high - box.low;
-      const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-      const auto from = order_.begin() + box.first;
-      const Index half = box.count / 2;
-      std::nth_element(from, from + half, from + box.count, [&](Index p, Index q) {
-        const double u = middle[at(p)][axis], v = middle[at(q)][axis];
-        return u < v || (u == v && p < q);
-      });
-      box.left = static_cast<Index>(tree_.size());
-      tree_.push_back({{}, {}, box.first, half, -1});
-      tree_.push_back({{}, {}, box.first + half, box.count - half, -1});
-    }
-    tree_[b] = box;
-  }
-  extent_ = norm(tree_[0].high - tree_[0].low);
+  const auto box_of = [this](Index t) {
+    Box box(corner(t, 0));
+    box.add(corner(t, 1));
+    box.add(corner(t, 2));
+    return box;
+  };
+  tree_.build(static_cast<Index>(surface_.triangles.size() / 3), box_of);
+  boxes_ = tree_.fitted(box_of);
+  extent_ = norm(boxes_[0].high - boxes_[0].low);
 }
 
 void MeshSolid::set_normals() {
@@ -133,59 +99,24 @@ void MeshSolid::set_normals() {
   }
 }
 
-// Ericson's regions of a triangle.
 void MeshSolid::look_at(const Vec3& y, Index t, Nearest& best) const {
   if (face_normal_[at(t)] == Vec3{}) return;  // no area: its edges are those of its neighbors
-  const Vec3 &a = corner(t, 0), &b = corner(t, 1), &c = corner(t, 2);
-  const Vec3 ab = b - a, ac = c - a;
+  const TrianglePoint found = nearest_on_triangle(y, corner(t, 0), corner(t, 1), corner(t, 2));
   Nearest n;
+  for (int k = 0; k < 3; ++k) n.point += found.weight[static_cast<std::size_t>(k)] * corner(t, k);
+  n.square = dot(y - n.point, y - n.point);
   n.triangle = t;
-  const auto keep = [&](const Vec3& point) {
-    n.point = point;
-    n.square = dot(y - point, y - point);
-    if (best.triangle < 0 || n.square < best.square) best = n;
-  };
-  const double d1 = dot(ab, y - a), d2 = dot(ac, y - a);
-  if (d1 <= 0 && d2 <= 0) return n.corner = 0, keep(a);
-  const double d3 = dot(ab, y - b), d4 = dot(ac, y - b);
-  if (d3 >= 0 && d4 <= d3) return n.corner = 1, keep(b);
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return n.edge = 0, keep(a + (d1 / (d1 - d3)) * ab);
-  const double d5 = dot(ab, y - c), d6 = dot(ac, y - c);
-  if (d6 >= 0 && d5 <= d6) return n.corner = 2, keep(c);
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return n.edge = 2, keep(a + (d2 / (d2 - d6)) * ac);
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 >= d3 && d5 >= d6) {
-    return n.edge = 1, keep(b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b));
-  }
-  const double sum = va + vb + vc;
-  keep(a + (vb / sum) * ab + (vc / sum) * ac);
+  n.corner = found.corner;
+  n.edge = found.edge;
+  if (best.triangle < 0 || n.square < best.square) best = n;
 }
 
 MeshSolid::Nearest MeshSolid::nearest(const Vec3& y) const {
   Nearest best;
-  struct Waiting {
-    Index box;
-    double square;
-  };
-  std::array<Waiting, kStack> stack;
-  std::size_t size = 0;
-  stack[size++] = {0, 0};
-  while (size > 0) {
-    const Waiting next = stack[--size];
-    if (best.triangle >= 0 && next.square >= best.square) continue;
-    const Box& box = tree_[at(next.box)];
-    if (box.left < 0) {
-      for (Index i = box.first; i < box.first + box.count; ++i) look_at(y, order_[at(i)], best);
-      continue;
-    }
-    Waiting near{box.left, square_to_box(y, tree_[at(box.left)].low, tree_[at(box.left)].high)};
-    Waiting far{box.left + 1, square_to_box(y, tree_[at(box.left) + 1].low, tree_[at(box.left) + 1].high)};
-    if (far.square < near.square) std::swap(near, far);
-    stack[size++] = far;
-    stack[size++] = near;
-  }
+  tree_.visit_near(boxes_, y, [&](Index t) {
+    look_at(y, t, best);
+    return best.triangle < 0 ? std::numeric_limits<double>::infinity() : best.square;
+  });
   return best;
 }
 
@@ -259,8 +190,7 @@ Distance MeshSolid::distance(const Vec3& y) const {
 std::size_t MeshSolid::crossings(const Vec3& y0, const Vec3& y1, std::span<double> out) const {
   const Vec3 way = y1 - y0;
   const double skin = 1e-12 * extent_;
-  std::array<Index, kStack> stack;
-  std::size_t size = 0, found = 0;
+  std::size_t found = 0;
   const auto add = [&](double s) {
     // One crossing, though an edge belongs to two triangles.
     for (std::size_t i = 0; i < found; ++i) {
@@ -272,29 +202,20 @@ std::size_t MeshSolid::crossings(const Vec3& y0, const Vec3& y1, std::span<doubl
     for (; i > 0 && out[i - 1] > s; --i) out[i] = out[i - 1];
     out[i] = s;
   };
-  stack[size++] = 0;
-  while (size > 0) {
-    const Box& box = tree_[at(stack[--size])];
-    if (!meets_box(y0, way, box.low, box.high, skin)) continue;
-    if (box.left >= 0) {
-      stack[size++] = box.left;
-      stack[size++] = box.left + 1;
-      continue;
-    }
-    for (Index i = box.first; i < box.first + box.count; ++i) {
-      // Cramer's rule for y0 + s way = a + u ab + v ac; slightly larger triangles leave no slits.
-      const Index t = order_[at(i)];
-      const Vec3 ab = corner(t, 1) - corner(t, 0), ac = corner(t, 2) - corner(t, 0), from = y0 - corner(t, 0);
-      const Vec3 p = cross(way, ac);
-      const double det = dot(ab, p);
-      if (det == 0) continue;
-      const double u = dot(from, p) / det;
-      const Vec3 q = cross(from, ab);
-      const double v = dot(way, q) / det, s = dot(ac, q) / det;
-      constexpr double slack = 1e-10;
-      if (u >= -slack && v >= -slack && u + v <= 1 + slack && s >= 0 && s <= 1) add(s);
-    }
-  }
+  const auto cross_triangle = [&](Index t) {
+    // Cramer's rule for y0 + s way = a + u ab + v ac; slightly larger triangles leave no slits.
+    const Vec3 ab = corner(t, 1) - corner(t, 0), ac = corner(t, 2) - corner(t, 0), from = y0 - corner(t, 0);
+    const Vec3 p = cross(way, ac);
+    const double det = dot(ab, p);
+    if (det == 0) return;
+    const double u = dot(from, p) / det;
+    const Vec3 q = cross(from, ab);
+    const double v = dot(way, q) / det, s = dot(ac, q) / det;
+    constexpr double slack = 1e-10;
+    if (u >= -slack && v >= -slack && u + v <= 1 + slack && s >= 0 && s <= 1) add(s);
+  };
+  tree_.visit(
+      boxes_, [&](const Box& box) { return meets_box(y0, way, box, skin); }, cross_triangle);
   return found;
 }
 

@@ -2,6 +2,7 @@
 // boxes.
 #pragma once
 
+#include "constraints/box_tree.h"
 #include "constraints/solid.h"
 
 namespace isochor {
@@ -14,15 +15,10 @@ class MeshSolid final : public Solid {
   Distance distance(const Vec3& y) const override;
   double value(const Vec3& y) const override;
   std::size_t crossings(const Vec3& y0, const Vec3& y1, std::span<double> out) const override;
-  std::array<Vec3, 2> box() const override { return {tree_[0].low, tree_[0].high}; }
+  std::array<Vec3, 2> box() const override { return {boxes_[0].low, boxes_[0].high}; }
   TriangleSurface outline() const override { return surface_; }
 
  private:
-  struct Box {
-    Vec3 low{}, high{};
-    Index first = 0, count = 0;  // triangles of a leaf, in the order of order_
-    Index left = -1;             // of an inner box; the other half comes right behind it
-  };
   // What of a triangle is nearest to a point.
   struct Nearest {
     double square = 0;  // of the distance
@@ -48,8 +44,8 @@ class MeshSolid final : public Solid {
   std::vector<Vec3> corner_normal_;  // of points, weighted by angles
   std::vector<Index> across_;        // the triangle behind edge k of triangle t, at 3 t + k
   Lists around_;                     // triangles at each point
-  std::vector<Box> tree_;
-  std::vector<Index> order_;
+  BoxTree tree_;
+  std::vector<Box> boxes_;
 };
 
 }  // namespace isochor

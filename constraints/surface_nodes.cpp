@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "constraints/surface_pool.h"
 #include "engine/mesh/cell_shape.h"
@@ -9,6 +10,9 @@
 namespace isochor {
 
 namespace {
+
+// A face of six nodes as triangles.
+constexpr std::size_t kParts[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
 
 // Mid-edge nodes of a side of a Tet10 follow its corners as (01)(12)(20).
 Index middle_of(const Index* cell, std::size_t a, std::size_t b) {
@@ -60,6 +64,44 @@ Result<std::vector<Index>> surface_faces(const Builder& builder, BodyId id,
   return boundary_faces(builder.body(id));
 }
 
+Result<std::vector<Index>> surface_triangles(const Builder& builder, BodyId id,
+                                             std::span<const std::string> surfaces, const std::string& who) {
+  auto named = surface_faces(builder, id, surfaces, who);
+  if (!named) return Error{named.error()};
+  const BodyData& body = builder.body(id);
+  const auto per = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
+  const std::vector<Index> boundary = boundary_faces(body);
+  // Named faces may be wound either way, those of the boundary are not.
+  const auto key = [per](std::span<const Index> face) {
+    std::array<Index, 4> k{-1, -1, -1, -1};
+    std::copy_n(face.begin(), per == 4 ? 4 : 3, k.begin());
+    std::sort(k.begin(), k.end());
+    return k;
+  };
+  std::set<std::array<Index, 4>> wanted;
+  for (std::size_t f = 0; f < named.value().size(); f += per)
+    wanted.insert(key(std::span(named.value()).subspan(f, per)));
+  std::vector<Index> triangles;
+  for (std::size_t f = 0; f < boundary.size(); f += per) {
+    const auto face = std::span(boundary).subspan(f, per);
+    if (wanted.erase(key(face)) == 0) continue;
+    if (per == 3) {
+      triangles.insert(triangles.end(), face.begin(), face.end());
+    } else if (per == 6) {
+      for (const auto& part : kParts) {
+        for (const std::size_t k : part) triangles.push_back(face[k]);
+      }
+    } else {
+      const auto first = static_cast<std::size_t>(std::min_element(face.begin(), face.end()) - face.begin());
+      for (const std::size_t k : {1u, 2u})
+        triangles.insert(triangles.end(), {face[first], face[(first + k) % 4], face[(first + k + 1) % 4]});
+    }
+  }
+  if (wanted.empty()) return triangles;
+  return Error{who + ": " + std::to_string(wanted.size()) +
+               " faces of its surfaces are inside the body; name surfaces of the boundary"};
+}
+
 std::vector<SurfaceNode> surface_nodes(std::span<const Index> faces, std::size_t per,
                                        std::span<const Vec3> rest) {
   std::map<Index, double> area;
@@ -72,7 +114,6 @@ std::vector<SurfaceNode> surface_nodes(std::span<const Index> faces, std::size_t
       add(face);
       continue;
     }
-    constexpr std::size_t kParts[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
     for (const auto& part : kParts) {
       const Index corners[3] = {face[part[0]], face[part[1]], face[part[2]]};
       add(corners);

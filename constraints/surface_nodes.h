@@ -10,6 +10,11 @@ namespace isochor {
 Result<std::vector<Index>> surface_faces(const Builder& builder, BodyId body,
                                          std::span<const std::string> surfaces, const std::string& who);
 
+// The same faces as triangles that are wound outward, three corners each: faces of six nodes as four, those
+// of four as two that share the diagonal from the smallest node number.
+Result<std::vector<Index>> surface_triangles(const Builder& builder, BodyId body,
+                                             std::span<const std::string> surfaces, const std::string& who);
+
 struct SurfaceNode {
   Index node = -1;
   double area = 0;  // at rest [m^2]

@@ -50,6 +50,22 @@ struct StencilSlots {
       hessian;  // [hessian_offset(s) + a (a + 1) / 2 + b], b <= a: second derivative of the same sum
 };
 
+class Parallel;
+class StencilPool;
+
+// What followed() is asked.
+struct FollowRequest {
+  std::span<const double> memory;  // of the pool, as State holds it; empty: go by the present stencils
+  std::span<const Vec3> from, x;   // positions when the increment began, and now [m]
+  bool solved = false;  // x is a solution with the present stencils; otherwise the guess before one
+  const Parallel* parallel = nullptr;
+};
+struct FollowAnswer {
+  std::shared_ptr<const StencilPool> pool;  // with other stencils; null: the present ones do
+  Index crossed = 0;                        // points that went through what the present stencils do not see
+  Index passing = 0;  // points that are through although the stencils see what they went through
+};
+
 // All stencils of one kind, contiguous. Pure: evaluation reads rest data and positions, writes slots, nothing
 // else.
 class StencilPool {
@@ -85,6 +101,16 @@ class StencilPool {
     (void)x;
     (void)stopped;
     return 0;
+  }
+
+  // True for pools whose stencils change with what is close (contact of surfaces that move). Between
+  // increments, and once a solution is found, they are asked whether the present stencils do for the
+  // positions; the answer depends on the request alone. Pools that replace each other have the same name,
+  // numbers of stencils and functions, and memory.
+  virtual bool follows() const { return false; }
+  virtual FollowAnswer followed(const FollowRequest& request) const {
+    (void)request;
+    return {};
   }
 
   // Offsets of each stencil's packed Hessian blocks, in blocks; filled by finish_topology().

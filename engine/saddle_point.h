@@ -84,6 +84,8 @@ class SaddlePoint {
   Assembly& assembly() { return assembly_; }
   LinearSolver& linear_solver() { return kkt_.linear_solver(); }
   const StageSeconds& seconds() const { return seconds_; }
+  // Counts the time of a method that this one takes the place of.
+  void add_seconds(const StageSeconds& earlier) { seconds_ += earlier; }
   std::int64_t factor_nonzeros() const { return kkt_.factor_nonzeros(); }
   int analyses() const { return kkt_.analyses(); }
   // Largest diagonal stiffness of each node at rest [N/m].

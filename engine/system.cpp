@@ -327,6 +327,7 @@ class SystemCompiler {
       s_->memory_ += pool->memory();
       s_->has_lag_ = s_->has_lag_ || pool->has_lag();
       s_->has_barrier_ = s_->has_barrier_ || pool->has_barrier();
+      s_->has_followers_ = s_->has_followers_ || pool->follows();
     }
   }
 

@@ -121,6 +121,7 @@ class System {
   // Some stencils hold on to positions and multipliers within an iteration; nodes could pass through some.
   bool has_lag() const { return has_lag_; }
   bool has_barrier() const { return has_barrier_; }
+  bool has_followers() const { return has_followers_; }  // stencils that change with what is close
   std::span<const double> row_metric() const { return row_metric_; }
   std::span<const double> row_measure() const { return row_measure_; }
   std::span<const std::int64_t> diagonal_place() const { return diagonal_place_; }
@@ -153,7 +154,7 @@ class System {
   std::vector<BorderCompliance> border_compliance_;
   Index memory_ = 0;
   std::vector<Index> first_memory_, first_stencil_memory_;
-  bool has_lag_ = false, has_barrier_ = false;
+  bool has_lag_ = false, has_barrier_ = false, has_followers_ = false;
 };
 
 }  // namespace isochor

@@ -101,10 +101,6 @@ Result<void> World::Impl::compile_once() {
   auto parts = builder.finish(!options.scheme->has_inertia());
   if (!parts) return Error{parts.error()};
   if (auto r = make_method(std::move(parts).value()); !r) return r;
-  newton->cancelled = [this] {
-    return cancel_requested.load(std::memory_order_relaxed) ||
-           (deadline && std::chrono::steady_clock::now() > *deadline);
-  };
   allocate();
   return {};
 }
@@ -228,24 +224,49 @@ SaddleOptions World::Impl::saddle_options(const Allowance& allowance) const {
   return saddle;
 }
 
-SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
-  const double h_evaluated = options.scheme->evaluated_at() * h, t_new = state.t + h_evaluated;
-  SaddleProblem problem = problem_at(t_new);
-  problem.mass_scale = options.scheme->begin(state, scheme_memory(), h, predicted);
-  problem.predicted = predicted;
-  const bool dynamic = problem.mass_scale > 0;
-  if (dynamic) problem.increment.h = h_evaluated;
+Result<void> World::Impl::replace_stencils(std::vector<std::shared_ptr<const StencilPool>> pools) {
+  SystemParts parts = system->parts();
+  parts.stencil_pools = std::move(pools);
+  const StageSeconds spent = newton->seconds();
+  if (auto r = make_method(std::move(parts)); !r) return r;
+  newton->add_seconds(spent);
+  return {};
+}
+
+World::Impl::Surroundings World::Impl::look_around(std::span<const Vec3> x, bool solved) {
+  Surroundings found;
+  if (!system->has_followers()) return found;
+  auto pools = system->parts().stencil_pools;
+  for (std::size_t p = 0; p < pools.size(); ++p) {
+    if (!pools[p]->follows()) continue;
+    FollowRequest request{{}, state.x, x, solved, parallel.get()};
+    if (!solved) {
+      request.memory = std::span<const double>(state.extra)
+                           .subspan(at(system->first_stencil_memory(static_cast<Index>(p))),
+                                    static_cast<std::size_t>(pools[p]->memory()));
+    }
+    FollowAnswer answer = pools[p]->followed(request);
+    found.crossed += answer.crossed;
+    found.passing += answer.passing;
+    if (!answer.pool) continue;
+    found.changed = true;
+    pools[p] = std::move(answer.pool);
+  }
+  if (!found.changed) return found;
+  if (auto r = replace_stencils(std::move(pools)); !r) found.error = r.error();
+  return found;
+}
+
+// From the trial positions and multipliers.
+SaddleReport World::Impl::solve_increment(SaddleProblem& problem, const Allowance& allowance,
+                                          bool from_guess) {
   const SaddleOptions saddle = saddle_options(allowance);
   newton->progress = nullptr;
   if (progress) {
-    newton->progress = [this, t_new](int iteration, double f, double r) {
-      progress(ProgressInfo{t_new, t_new, iteration, f, r});
+    newton->progress = [this, t = problem.t1](int iteration, double f, double r) {
+      progress(ProgressInfo{t, t, iteration, f, r});
     };
   }
-  // Inertia's guess first; where it fails (it may turn elements over) the old positions are a safe start.
-  std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
-  const auto& start = dynamic ? predicted : state.x;
-  std::copy(start.begin(), start.end(), x_trial.begin());
   count_passing(problem.increment, true);
   SaddleReport report = newton->solve(problem, saddle, x_trial, lambda_trial);
   if (report.status == SaddleStatus::converged && count_passing(problem.increment, false) > 0) {
@@ -256,7 +277,7 @@ SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
                              report.status != SaddleStatus::passed_through;
   const bool stuck = report.status != SaddleStatus::converged && report.status != SaddleStatus::cancelled &&
                      report.status != SaddleStatus::out_of_memory && !out_of_budget;
-  if (dynamic && stuck) {
+  if (from_guess && stuck) {
     std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
     std::copy(state.x.begin(), state.x.end(), x_trial.begin());
     SaddleReport second = newton->solve(problem, saddle, x_trial, lambda_trial);
@@ -266,13 +287,56 @@ SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
     second.add_work(report);
     report = std::move(second);
   }
+  return report;
+}
+
+SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
+  constexpr int most_looks = 8;
+  const double h_evaluated = options.scheme->evaluated_at() * h, t_new = state.t + h_evaluated;
+  SaddleProblem problem = problem_at(t_new);
+  problem.mass_scale = options.scheme->begin(state, scheme_memory(), h, predicted);
+  problem.predicted = predicted;
+  const bool dynamic = problem.mass_scale > 0;
+  if (dynamic) problem.increment.h = h_evaluated;
+  // Inertia's guess first; where it fails (it may turn elements over, or leads through a surface) the old
+  // positions are a safe start.
+  bool from_guess = dynamic;
+  const auto begin_at = [this](std::span<const Vec3> x) {
+    std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
+    std::copy(x.begin(), x.end(), x_trial.begin());
+  };
+  SaddleReport report;
+  Surroundings around = look_around(dynamic ? predicted : state.x, false);
+  if (around.crossed > 0) from_guess = false;
+  begin_at(from_guess ? predicted : state.x);
+  for (int look = 0; around.error.empty(); ++look) {
+    SaddleReport solved = solve_increment(problem, allowance, from_guess);
+    solved.add_work(report);
+    report = std::move(solved);
+    if (report.status != SaddleStatus::converged) break;
+    around = look_around(x_trial, true);
+    if (around.passing > 0 || (around.crossed > 0 && look + 1 == most_looks))
+      report.status = SaddleStatus::passed_through;
+    if (!around.changed || report.status != SaddleStatus::converged || look + 1 == most_looks) break;
+    // What was seen too late is met on the way there.
+    from_guess = false;
+    if (around.crossed > 0) begin_at(state.x);
+  }
+  if (!around.error.empty()) {
+    report.status = SaddleStatus::singular;
+    report.message = around.error;
+  }
   const bool finite_iterate = std::all_of(x_trial.begin(), x_trial.end(), [](const Vec3& x) {
     return std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z);
   });
-  const bool best_there_is = allowance.keep_unfinished && report.iterations > 0 && finite_iterate &&
-                             report.status != SaddleStatus::diverged &&
-                             !cancel_requested.load(std::memory_order_relaxed) &&
-                             count_passing(problem.increment, false) == 0;
+  bool best_there_is =
+      allowance.keep_unfinished && report.iterations > 0 && finite_iterate &&
+      report.status != SaddleStatus::diverged && report.status != SaddleStatus::passed_through &&
+      !cancel_requested.load(std::memory_order_relaxed) && count_passing(problem.increment, false) == 0;
+  if (best_there_is && report.status != SaddleStatus::converged) {
+    around = look_around(x_trial, true);
+    best_there_is = around.error.empty() && around.crossed + around.passing == 0;
+  }
   if (report.status == SaddleStatus::converged || best_there_is) accept(h, predicted);
   return report;
 }

@@ -57,6 +57,14 @@ struct World::Impl {
   double estimate_error(double h);
   void accept_memory(const StencilIncrement& increment);
   Index count_passing(const StencilIncrement& increment, bool stop);
+  // Has stencils that change with what is close look at the trial positions, and takes over what they become.
+  struct Surroundings {
+    bool changed = false;
+    Index crossed = 0, passing = 0;  // as in FollowAnswer
+    std::string error;
+  };
+  Surroundings look_around(std::span<const Vec3> x, bool solved);
+  Result<void> replace_stencils(std::vector<std::shared_ptr<const StencilPool>> pools);
   // What a solve may cost, and whether its last iterate is kept when that is used up.
   struct Allowance {
     int iterations = 0, factorizations = 0;
@@ -65,6 +73,7 @@ struct World::Impl {
   SaddleProblem problem_at(double t);
   SaddleOptions saddle_options(const Allowance& allowance) const;
   SaddleReport attempt(double h, const Allowance& allowance);
+  SaddleReport solve_increment(SaddleProblem& problem, const Allowance& allowance, bool from_guess);
   void accept(double h, std::span<const Vec3> prediction);
   SaddleReport rescue(double h);
   Result<void> make_method(SystemParts parts);

@@ -61,6 +61,11 @@ Result<void> World::Impl::make_method(SystemParts parts) {
                  " finds stable equilibria only, paths of equilibria lead through unstable ones; use another "
                  "method with continuation()"};
   }
+  for (const auto& pool : parts.stencil_pools) {
+    if (!pool->follows() || !follows) continue;
+    return Error{"world: \"" + std::string(pool->name()) +
+                 "\" changes with what is close, which continuation() does not follow; use statics()"};
+  }
   const bool positions = options.method == Method::position_based;
   if (positions && !options.scheme->has_inertia()) {
     return Error{
@@ -108,6 +113,10 @@ Result<void> World::Impl::make_method(SystemParts parts) {
   } else {
     newton = std::make_unique<Newton>(system, *parallel, std::move(solver));
   }
+  newton->cancelled = [this] {
+    return cancel_requested.load(std::memory_order_relaxed) ||
+           (deadline && std::chrono::steady_clock::now() > *deadline);
+  };
   const auto count = [](std::span<const Index> rows) { return std::to_string(rows.size()); };
   method = std::string(name_of(options.method)) + ": " + std::to_string(system->free_unknowns()) +
            " displacements; rows: " + count(system->kept_rows()) + " in the matrix, " +

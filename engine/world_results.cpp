@@ -244,7 +244,7 @@ Result<void> World::load(std::span<const std::byte> bytes) {
   if (!take(bytes, &magic, 1) || magic != kSaveMagic) {
     return Error{"load: these bytes are no saved state of a world (wrong first eight bytes)"};
   }
-  if (!take(bytes, &layout, 1) || layout != w.system->layout()) {
+  if (!take(bytes, &layout, 1) || layout != w.state.layout) {
     return Error{
         "load: the state was saved from another scene or mesh; load it into a world built the same way"};
   }
@@ -273,6 +273,7 @@ Result<void> World::load(std::span<const std::byte> bytes) {
   w.load_amounts(amounts);
   w.state = std::move(next);
   w.reactions = std::move(reactions);
+  if (const auto around = w.look_around(w.state.x, false); !around.error.empty()) return Error{around.error};
   return {};
 }
 

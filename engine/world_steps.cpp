@@ -206,7 +206,11 @@ SaddleReport World::Impl::rescue(double h) {
     last.add_work(total);
     total = last;
     if (found) {
-      accept(h, predicted);
+      const Surroundings around = look_around(x_trial, true);
+      if (around.changed || around.passing > 0)
+        total.status = SaddleStatus::passed_through;
+      else
+        accept(h, predicted);
       return total;
     }
     if (last.status == SaddleStatus::cancelled || inertia <= negligible) return total;

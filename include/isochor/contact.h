@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "isochor/poses.h"
 #include "isochor/solids.h"
@@ -77,5 +78,25 @@ struct ContactDef {
   double resolve_time = 1;  // [s]; statics: load factor
 };
 EffectPtr contact(ContactDef def);
+
+// Surfaces of soft bodies against each other, or that of one body against itself. Both sides are integrated
+// over with points at corners, edges and middles of triangles (faces of more nodes are split), each with a
+// row of its own, so that neither is master or slave. The layer between them has a compliance always.
+struct SurfaceContactDef {
+  std::string name = "surface_contact";
+  BodyId body{};
+  std::vector<std::string> surfaces;  // empty: the whole boundary of the body
+  // The other side; empty: `surfaces` touch each other, a body itself.
+  std::optional<BodyId> against;
+  std::vector<std::string> against_surfaces;  // empty: the whole boundary of that body
+  // [m/Pa]: depth over pressure. Not given: that of a layer two percent of a face thick, of the softer body.
+  std::optional<double> compliance;
+  double thickness = 0;        // [m]: distance that the surfaces keep
+  double friction = 0;         // as in ContactDef
+  double stick_stiffness = 0;  // as in ContactDef
+  InitialOverlap initial_overlap = InitialOverlap::report;
+  double resolve_time = 1;  // [s]; statics: load factor
+};
+EffectPtr surface_contact(SurfaceContactDef def);
 
 }  // namespace isochor

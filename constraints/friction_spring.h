@@ -1,0 +1,39 @@
+// Friction as an energy of the slip, with the normal force and the tangent plane held.
+#pragma once
+
+#include <cmath>
+
+#include "engine/base.h"
+
+namespace isochor {
+
+// k/2 |z|^2 where k |z| <= mu N, else mu N |z| - (mu N)^2 / (2 k): convex and once differentiable in z.
+struct FrictionSpring {
+  double stiffness = 0;  // k of friction that sticks [N/m]
+  double limit = 0;      // mu N [N]
+  Vec3 normal{}, z{};    // unit normal; slip, with what the last step left of the pull over k, across it [m]
+
+  double stretch() const { return std::sqrt(dot(z, z)); }
+  bool sticks() const { return stiffness * stretch() <= limit; }
+  double energy() const {
+    const double s = stretch();
+    return sticks() ? 0.5 * stiffness * s * s : limit * s - 0.5 * limit * limit / stiffness;
+  }
+  // Derivative in z [N].
+  Vec3 pull() const { return sticks() ? stiffness * z : (limit / stretch()) * z; }
+  // Second derivative: sticking, k in the tangent plane; slipping, only across the direction of the slip.
+  Mat3 curvature() const {
+    const double s = stretch(), k = sticks() ? stiffness : limit / s;
+    Mat3 plane;
+    for (int i = 0; i < 3; ++i) {
+      plane(i, i) = k;
+      for (int j = 0; j < 3; ++j) {
+        plane(i, j) -= k * normal[i] * normal[j];
+        if (!sticks()) plane(i, j) -= k / (s * s) * z[i] * z[j];
+      }
+    }
+    return plane;
+  }
+};
+
+}  // namespace isochor

@@ -1,0 +1,184 @@
+#include "constraints/skin.h"
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "constraints/triangle.h"
+
+namespace isochor {
+
+namespace {
+
+Vec3 area_vector(const std::array<Index, 3>& c, std::span<const Vec3> x) {
+  return 0.5 * cross(x[at(c[1])] - x[at(c[0])], x[at(c[2])] - x[at(c[0])]);
+}
+
+double norm(const Vec3& v) {
+  return std::sqrt(dot(v, v));
+}
+
+}  // namespace
+
+Skin::Skin(const std::array<std::vector<Index>, 2>& sides, std::span<const Vec3> rest)
+    : single_(sides[1].empty()) {
+  double edges = 0;
+  for (std::size_t side = 0; side < 2; ++side) {
+    first_[side] = triangles();
+    std::map<std::pair<Index, Index>, std::pair<std::size_t, std::size_t>> open;
+    for (std::size_t t = 0; t < sides[side].size(); t += 3) {
+      const std::array<Index, 3> c{sides[side][t], sides[side][t + 1], sides[side][t + 2]};
+      corner_.push_back(c);
+      across_.push_back({-1, -1, -1});
+      side_.push_back(static_cast<int>(side));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index a = c[k], b = c[(k + 1) % 3];
+        edges += norm(rest[at(b)] - rest[at(a)]);
+        const auto [it, fresh] =
+            open.emplace(std::pair(std::min(a, b), std::max(a, b)), std::pair(corner_.size() - 1, k));
+        if (fresh) continue;
+        across_.back()[k] = static_cast<Index>(it->second.first);
+        across_[it->second.first][it->second.second] = triangles() - 1;
+      }
+    }
+    tree_[side].build(triangles() - first_[side], [&](Index i) {
+      Box box(rest[at(corner_[at(first_[side] + i)][0])]);
+      for (const Index n : corner_[at(first_[side] + i)]) box.add(rest[at(n)]);
+      return box;
+    });
+  }
+  size_ = corner_.empty() ? 0 : edges / static_cast<double>(3 * corner_.size());
+  add_points(rest);
+}
+
+// The Newton-Cotes rule of degree three, all of whose weights are positive: corners, middles of edges, the
+// middle of the triangle. Neighbors share its points, so they sample corners and edges of a surface.
+void Skin::add_points(std::span<const Vec3> rest) {
+  constexpr double at_corner = 1.0 / 20, at_edge = 2.0 / 15, at_middle = 9.0 / 20;
+  std::map<std::pair<int, std::array<Index, 3>>, std::size_t> known;
+  std::vector<std::vector<Index>> around;
+  const auto add = [&](std::array<Index, 3> node, int nodes, Index triangle, double area) {
+    std::sort(node.begin(), node.begin() + nodes);
+    const int side = side_[at(triangle)];
+    const auto [it, fresh] = known.emplace(std::pair(side, node), points_.size());
+    if (fresh) {
+      points_.push_back({node, nodes, side, 0});
+      around.emplace_back();
+    }
+    points_[it->second].area += area;
+    around[it->second].push_back(triangle);
+  };
+  for (Index t = 0; t < triangles(); ++t) {
+    const auto& c = corner_[at(t)];
+    const double area = norm(area_vector(c, rest));
+    for (std::size_t k = 0; k < 3; ++k) {
+      add({c[k], -1, -1}, 1, t, at_corner * area);
+      add({c[k], c[(k + 1) % 3], -1}, 2, t, at_edge * area);
+    }
+    add(c, 3, t, at_middle * area);
+  }
+  for (const auto& list : around) at_point_.push(list);
+}
+
+bool Skin::touches(Index triangle, const SkinPoint& point) const {
+  for (const Index c : corner_[at(triangle)]) {
+    for (int k = 0; k < point.nodes; ++k) {
+      if (point.node[static_cast<std::size_t>(k)] == c) return true;
+    }
+  }
+  return false;
+}
+
+bool Skin::facing(Index s, Index triangle, std::span<const Vec3> x) const {
+  Vec3 own{};
+  for (const Index t : at_point_[s]) own += area_vector(corner_[at(t)], x);
+  return dot(area_vector(corner_[at(triangle)], x), own) < 0;
+}
+
+Skin::Around Skin::around(Index triangle, Index point) const {
+  Around out;
+  const auto add = [&](Index t) {
+    auto& corner = out.patch.corner[out.patch.triangles++];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index n = corner_[at(t)][k];
+      std::uint8_t place = 0;
+      while (place < out.patch.nodes && out.node[place] != n) ++place;
+      if (place == out.patch.nodes) out.node[out.patch.nodes++] = n;
+      corner[k] = place;
+    }
+  };
+  add(triangle);
+  for (const Index t : across_[at(triangle)]) {
+    if (t >= 0 && !touches(t, points_[at(point)])) add(t);
+  }
+  return out;
+}
+
+Skin::Finding Skin::find(Index s, std::span<const Vec3> from, std::span<const Vec3> x, double reach,
+                         std::span<const Box> boxes) const {
+  const SkinPoint& point = points_[at(s)];
+  const auto other = static_cast<std::size_t>(single_ ? 0 : 1 - point.side);
+  const Vec3 p0 = point.position(from), p1 = point.position(x);
+  Box way(p0);
+  way.add(p1);
+  way = way.grown(reach);
+  Vec3 own{};
+  for (const Index t : at_point_[s]) own += area_vector(corner_[at(t)], x);
+  Finding found;
+  double square = reach * reach, earliest = 2;
+  tree_[other].visit(
+      boxes, [&](const Box& box) { return box.meets(way); },
+      [&](Index i) {
+        const Index t = first_[other] + i;
+        const auto& c = corner_[at(t)];
+        const Vec3 &a = x[at(c[0])], &b = x[at(c[1])], &d = x[at(c[2])];
+        // Surfaces that touch face each other; what lies beside a point on its own surface does not.
+        const Vec3 normal = cross(b - a, d - a);
+        if (!(dot(normal, own) < 0)) return;
+        if (single_ && touches(t, point)) return;
+        const auto near = nearest_on_triangle(p1, a, b, d);
+        const Vec3 r = p1 - (near.weight[0] * a + near.weight[1] * b + near.weight[2] * d);
+        const double distance = dot(r, r);
+        if (distance < square || (distance == square && found.nearest >= 0 && t < found.nearest)) {
+          square = distance;
+          found.nearest = t;
+          found.distance = dot(r, normal) < 0 ? -std::sqrt(distance) : std::sqrt(distance);
+        }
+        const double time =
+            crossing_time({p0, from[at(c[0])], from[at(c[1])], from[at(c[2])]}, {p1, a, b, d});
+        if (time < earliest || (time <= 1 && time == earliest && t < found.crossed)) {
+          earliest = time;
+          found.crossed = t;
+        }
+      });
+  return found;
+}
+
+void Skin::search(std::span<const Vec3> from, std::span<const Vec3> x, double reach, const Parallel* parallel,
+                  std::span<Finding> out) const {
+  std::array<std::vector<Box>, 2> boxes;
+  for (std::size_t side = 0; side < 2; ++side) {
+    boxes[side] = tree_[side].fitted([&](Index i) {
+      const auto& c = corner_[at(first_[side] + i)];
+      Box box(x[at(c[0])]);
+      for (const Index n : c) {
+        box.add(x[at(n)]);
+        box.add(from[at(n)]);
+      }
+      return box;
+    });
+  }
+  const auto look = [&](Index begin, Index end) {
+    for (Index s = begin; s < end; ++s) {
+      const auto other = static_cast<std::size_t>(single_ ? 0 : 1 - points_[at(s)].side);
+      out[at(s)] = find(s, from, x, reach, boxes[other]);
+    }
+  };
+  const auto count = static_cast<Index>(points_.size());
+  if (parallel)
+    parallel->run(count, 128, look);
+  else
+    look(0, count);
+}
+
+}  // namespace isochor

@@ -1,0 +1,77 @@
+// Surfaces of soft bodies for contact between them: triangles that move with their nodes, points on them that
+// contact is integrated over, and the search for what is close.
+#pragma once
+
+#include "constraints/box_tree.h"
+#include "constraints/patch_distance.h"
+#include "engine/parallel.h"
+
+namespace isochor {
+
+// A point of a surface: a corner, the middle of an edge or that of a triangle.
+struct SkinPoint {
+  std::array<Index, 3> node{-1, -1, -1};
+  int nodes = 1;    // their mean is the point
+  int side = 0;     // 0 or 1
+  double area = 0;  // that it stands for, at rest [m^2]
+
+  double weight() const { return 1.0 / nodes; }
+  Vec3 position(std::span<const Vec3> x) const {
+    Vec3 p{};
+    for (int k = 0; k < nodes; ++k) p += x[at(node[static_cast<std::size_t>(k)])];
+    return weight() * p;
+  }
+};
+
+class Skin {
+ public:
+  // Triangles (three scene nodes each, counterclockwise from outside) of one side or two; those of one side
+  // contact the other, those of a single one each other.
+  Skin(const std::array<std::vector<Index>, 2>& sides, std::span<const Vec3> rest);
+
+  Index triangles() const { return static_cast<Index>(corner_.size()); }
+  bool single() const { return single_; }
+  const std::vector<SkinPoint>& points() const { return points_; }
+  // Triangles that a point belongs to.
+  std::span<const Index> triangles_at(Index point) const { return at_point_[point]; }
+  const std::array<Index, 3>& corners(Index triangle) const { return corner_[at(triangle)]; }
+  // Mean edge of a triangle at rest [m], over all of them.
+  double size() const { return size_; }
+
+  // The patch around a triangle as a point sees it, neighbors that the point belongs to left out, and its
+  // nodes in the scene.
+  struct Around {
+    Patch patch;
+    std::array<Index, kPatchNodes> node{};
+  };
+  Around around(Index triangle, Index point) const;
+
+  // Whether the surface at a point and a triangle face each other.
+  bool facing(Index point, Index triangle, std::span<const Vec3> x) const;
+
+  struct Finding {
+    Index nearest = -1;  // triangle that faces the point, within reach at x
+    double distance = 0;
+    Index crossed = -1;  // triangle that the point went through from front to back on its way
+  };
+  // For every point, over the straight way of all nodes from `from` to `x`.
+  void search(std::span<const Vec3> from, std::span<const Vec3> x, double reach, const Parallel* parallel,
+              std::span<Finding> out) const;
+
+ private:
+  void add_points(std::span<const Vec3> rest);
+  Finding find(Index point, std::span<const Vec3> from, std::span<const Vec3> x, double reach,
+               std::span<const Box> boxes) const;
+  bool touches(Index triangle, const SkinPoint& point) const;
+
+  bool single_ = true;
+  double size_ = 0;
+  std::vector<std::array<Index, 3>> corner_, across_;  // neighbor behind edge k, -1: none
+  std::vector<int> side_;
+  std::vector<SkinPoint> points_;
+  Lists at_point_;
+  std::array<BoxTree, 2> tree_;
+  std::array<Index, 2> first_{};  // triangle of a side
+};
+
+}  // namespace isochor

@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "constraints/contact_rows.h"
+#include "constraints/embedding.h"
+#include "constraints/surface_contact_pool.h"
+#include "constraints/surface_nodes.h"
+#include "engine/builder.h"
+#include "isochor/contact.h"
+
+namespace isochor {
+
+namespace {
+
+std::string number(double v) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6g", v);
+  return text;
+}
+
+// Of the layer that stands for a hard contact, over the size of a face.
+constexpr double kLayer = 0.02;
+
+class SurfaceContactInstance final : public EffectInstance {
+ public:
+  // `area` by node of the scene: of the surfaces at rest [m^2].
+  SurfaceContactInstance(std::shared_ptr<const ContactRows> rows, Index row_pool, std::vector<double> area)
+      : rows_(std::move(rows)), row_pool_(row_pool), area_(std::move(area)) {}
+
+  void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
+    const auto& pool =
+        static_cast<const SurfaceContactPool&>(*c.system.parts().stencil_pools[at(rows_->stencil_pool)]);
+    const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
+    const auto memory = std::span<const double>(c.state.extra)
+                            .subspan(at(c.system.first_stencil_memory(rows_->stencil_pool)),
+                                     static_cast<std::size_t>(pool.memory()));
+    const auto& points = pool.setup().skin->points();
+    std::vector<double> pressed(area_.size(), 0);
+    Vec3 force{};
+    double normal = 0, tangential = 0, area = 0, gap = std::numeric_limits<double>::infinity();
+    for (Index s = 0; s < pool.stencils(); ++s) {
+      if (!pool.close(s)) continue;
+      const PatchPoint near = pool.nearest(s, c.state.x);
+      if (!std::isfinite(near.distance)) continue;
+      gap = std::min(gap, near.distance - pool.setup().offset);
+      const double l = -lambda[at(s)];
+      if (!(l > 0)) continue;
+      const Vec3 pull = pool.kept_pull(s, memory, c.state.x);
+      const double sign = points[at(s)].side == 0 ? 1 : -1;
+      if (!pool.setup().skin->single()) force += sign * (l * near.normal - pull);
+      normal += l;
+      tangential += std::sqrt(dot(pull, pull));
+      area += 0.5 * rows_->area[at(s)];
+      const auto nodes = pool.nodes()[s];
+      for (std::size_t i = 0; i < nodes.size(); ++i)
+        pressed[at(nodes[i])] += l * std::abs(pool.share(s, i, near));
+    }
+    double pressure = 0;
+    for (std::size_t i = 0; i < pressed.size(); ++i) {
+      if (area_[i] > 0) pressure = std::max(pressure, pressed[i] / area_[i]);
+    }
+    const std::string name(rows_->name());
+    const auto put = [&](const char* quantity, const char* unit, double value) {
+      out.push_back({name, "contact", quantity, unit, value});
+    };
+    put("force_x", "N", force.x);
+    put("force_y", "N", force.y);
+    put("force_z", "N", force.z);
+    put("normal_force", "N", normal);
+    put("friction_force", "N", tangential);
+    put("contact_area", "m2", area);
+    put("largest_pressure", "Pa", pressure);
+    put("smallest_gap", "m", gap);
+  }
+
+ private:
+  std::shared_ptr<const ContactRows> rows_;
+  Index row_pool_;
+  std::vector<double> area_;
+};
+
+class SurfaceContactEffect final : public EffectSource {
+ public:
+  explicit SurfaceContactEffect(SurfaceContactDef def) : def_(std::move(def)) {}
+  const std::string& name() const override { return def_.name; }
+
+  Result<void> check() const override {
+    for (const auto& [key, value, unit] : {std::tuple{"thickness", def_.thickness, " m"},
+                                           {"friction", def_.friction, ""},
+                                           {"stick_stiffness", def_.stick_stiffness, " Pa/m"}}) {
+      if (value >= 0 && std::isfinite(value)) continue;
+      return Error{who() + key + " = " + number(value) + unit + "; it must be zero or positive"};
+    }
+    if (def_.compliance && !(*def_.compliance > 0 && std::isfinite(*def_.compliance))) {
+      return Error{who() + "compliance = " + number(*def_.compliance) +
+                   " m/Pa; it must be positive, or left out for a layer that is thin against the faces: "
+                   "between two faceted surfaces a hard contact has no unique pressure"};
+    }
+    if (!(def_.resolve_time > 0)) {
+      return Error{who() + "resolve_time = " + number(def_.resolve_time) + " s; it must be positive"};
+    }
+    return {};
+  }
+
+  Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
+    const std::string called = "surface contact \"" + def_.name + "\"";
+    auto sides = both_sides(builder, called);
+    if (!sides) return Error{sides.error()};
+    auto setup = std::make_shared<SurfaceContactPool::Setup>();
+    setup->name = def_.name;
+    setup->skin = std::make_shared<Skin>(sides.value(), builder.rest());
+    setup->offset = def_.thickness;
+    setup->friction = def_.friction;
+    setup->open = builder.length();
+    const std::array<double, 2> mu{stiffest(builder.body(def_.body)),
+                                   stiffest(builder.body(def_.against.value_or(def_.body)))};
+    const double softer = std::min(mu[0], mu[1]);
+    auto rows = std::make_shared<ContactRows>(def_.name, def_.resolve_time);
+    std::vector<double> area(builder.rest().size(), 0);
+    for (const SkinPoint& p : setup->skin->points()) {
+      for (int k = 0; k < p.nodes; ++k) area[at(p.node[static_cast<std::size_t>(k)])] += p.area / p.nodes;
+    }
+    const double layer = def_.compliance.value_or(kLayer * setup->skin->size() / softer);
+    for (const SkinPoint& p : setup->skin->points()) {
+      // Both sides carry half of the pressure.
+      rows->add(softer, p.area, builder.length(), 2 * layer);
+      setup->stick.push_back(def_.stick_stiffness > 0 ? 0.5 * def_.stick_stiffness * p.area
+                                                      : 50 * softer * p.area / setup->skin->size());
+    }
+    std::shared_ptr<const StencilPool> pool =
+        std::make_shared<SurfaceContactPool>(setup, std::vector<Index>(setup->skin->points().size(), -1));
+    const std::vector<double> nothing(static_cast<std::size_t>(pool->memory()), 0);
+    const FollowAnswer start = pool->followed({nothing, builder.rest(), builder.rest(), false, nullptr});
+    if (start.pool) pool = start.pool;
+    if (auto r = find_overlap(builder, static_cast<const SurfaceContactPool&>(*pool), *rows); !r)
+      return Error{r.error()};
+    rows->stencil_pool = builder.add_stencils(pool);
+    const Index row_pool = builder.add_rows(rows);
+    return std::unique_ptr<EffectInstance>(
+        std::make_unique<SurfaceContactInstance>(rows, row_pool, std::move(area)));
+  }
+
+ private:
+  std::string who() const { return "surface contact \"" + def_.name + "\": "; }
+
+  Result<std::array<std::vector<Index>, 2>> both_sides(const Builder& builder,
+                                                       const std::string& called) const {
+    std::array<std::vector<Index>, 2> sides;
+    auto first = surface_triangles(builder, def_.body, def_.surfaces, called);
+    if (!first) return Error{first.error()};
+    sides[0] = std::move(first).value();
+    if (!def_.against) {
+      if (!def_.against_surfaces.empty())
+        return Error{who() + "against_surfaces are named, but not the body in `against` that they belong to"};
+      return sides;
+    }
+    auto second = surface_triangles(builder, *def_.against, def_.against_surfaces, called);
+    if (!second) return Error{second.error()};
+    sides[1] = std::move(second).value();
+    std::vector<Index> shared = sides[0], other = sides[1], both;
+    std::sort(shared.begin(), shared.end());
+    std::sort(other.begin(), other.end());
+    std::set_intersection(shared.begin(), shared.end(), other.begin(), other.end(), std::back_inserter(both));
+    if (both.empty()) return sides;
+    return Error{who() + "its two sides have node " +
+                 std::to_string(both[0] - builder.body(def_.body).first_node) + " of body \"" +
+                 builder.body(def_.body).name +
+                 "\" in common; leave `against` out to have surfaces touch each other"};
+  }
+
+  Result<void> find_overlap(const Builder& builder, const SurfaceContactPool& pool, ContactRows& rows) const {
+    Index worst = -1, inside = 0;
+    double deepest = -1e-9 * builder.length();
+    std::vector<double> overlap(rows.area.size(), 0.0);
+    for (Index s = 0; s < pool.stencils(); ++s) {
+      if (!pool.close(s)) continue;
+      const double gap = pool.nearest(s, builder.rest()).distance - def_.thickness;
+      if (!std::isfinite(gap)) continue;
+      overlap[at(s)] = std::min(gap, 0.0);
+      if (gap < -1e-9 * builder.length()) ++inside;
+      if (gap >= deepest) continue;
+      deepest = gap;
+      worst = s;
+    }
+    if (worst < 0) return {};
+    if (def_.initial_overlap == InitialOverlap::resolve) {
+      rows.overlap = std::move(overlap);
+      return {};
+    }
+    const SkinPoint& point = pool.setup().skin->points()[at(worst)];
+    const BodyData& body = builder.body(point.side == 1 ? *def_.against : def_.body);
+    return Error{who() + std::to_string(inside) +
+                 " points of the surfaces are closer than they may be at the start, the deepest by " +
+                 number(-deepest) + " m at node " + std::to_string(point.node[0] - body.first_node) +
+                 " of body \"" + body.name +
+                 "\"; move one of the two, or set initial_overlap to resolve to have them pushed apart"};
+  }
+
+  SurfaceContactDef def_;
+};
+
+}  // namespace
+
+EffectPtr surface_contact(SurfaceContactDef def) {
+  return std::make_shared<SurfaceContactEffect>(std::move(def));
+}
+
+}  // namespace isochor

@@ -1,0 +1,221 @@
+#include "constraints/surface_contact_pool.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isochor {
+
+namespace {
+
+constexpr std::size_t kMost = 3 + kPatchNodes;  // nodes of a stencil
+
+double norm(const Vec3& v) {
+  return std::sqrt(dot(v, v));
+}
+
+}  // namespace
+
+SurfaceContactPool::SurfaceContactPool(std::shared_ptr<const Setup> setup, std::vector<Index> center)
+    : setup_(std::move(setup)), center_(std::move(center)) {
+  const Skin& skin = *setup_->skin;
+  patch_.resize(center_.size());
+  for (Index s = 0; s < static_cast<Index>(center_.size()); ++s) {
+    std::array<Index, kMost> nodes{};
+    std::size_t count = 0;
+    if (center_[at(s)] >= 0) {
+      const SkinPoint& point = skin.points()[at(s)];
+      for (std::size_t k = 0; k < static_cast<std::size_t>(point.nodes); ++k) nodes[count++] = point.node[k];
+      const Skin::Around around = skin.around(center_[at(s)], s);
+      for (std::size_t k = 0; k < around.patch.nodes; ++k) nodes[count++] = around.node[k];
+      patch_[at(s)] = around.patch;
+    }
+    nodes_.push(std::span(nodes).first(count));
+  }
+  finish_topology();
+}
+
+PatchPoint SurfaceContactPool::nearest(Index s, std::span<const Vec3> x) const {
+  const SkinPoint& point = setup_->skin->points()[at(s)];
+  const auto nodes = nodes_[s].subspan(static_cast<std::size_t>(point.nodes));
+  std::array<Vec3, kPatchNodes> corner{};
+  for (std::size_t k = 0; k < nodes.size(); ++k) corner[k] = x[at(nodes[k])];
+  return nearest_on_patch(point.position(x), std::span(corner).first(nodes.size()), patch_[at(s)]);
+}
+
+double SurfaceContactPool::share(Index s, std::size_t i, const PatchPoint& near) const {
+  const SkinPoint& point = setup_->skin->points()[at(s)];
+  const auto own = static_cast<std::size_t>(point.nodes);
+  return i < own ? point.weight() : -near.weight[i - own];
+}
+
+// Turn with the first triangle of the point.
+Mat3 SurfaceContactPool::axes(Index s, std::span<const Vec3> x) const {
+  const auto& c = setup_->skin->corners(setup_->skin->triangles_at(s)[0]);
+  const Vec3 u = x[at(c[1])] - x[at(c[0])], v = x[at(c[2])] - x[at(c[0])];
+  const Vec3 area = cross(u, v);
+  Mat3 out;
+  if (!(dot(area, area) > 0)) return out;
+  const Vec3 e = (1 / norm(u)) * u, n = (1 / norm(area)) * area, m = cross(n, e);
+  for (int i = 0; i < 3; ++i) {
+    out(i, 0) = e[i];
+    out(i, 1) = m[i];
+    out(i, 2) = n[i];
+  }
+  return out;
+}
+
+Vec3 SurfaceContactPool::kept_pull(Index s, std::span<const double> memory, std::span<const Vec3> x) const {
+  if (memory.empty() || setup_->friction == 0) return {};
+  const double* m = memory.data() + static_cast<std::size_t>(memory_per_point()) * at(s);
+  if (m[1] == 0 && m[2] == 0 && m[3] == 0) return {};
+  return axes(s, x) * Vec3{m[1], m[2], m[3]};
+}
+
+// As in ContactPool: without an increment what is left is the pull that the last step ended with.
+SurfaceContactPool::Friction SurfaceContactPool::friction(const StencilRequest& q, Index s) const {
+  Friction f;
+  f.spring.stiffness = setup_->stick[at(s)];
+  if (q.lag.x.empty()) {
+    const Vec3 kept = kept_pull(s, q.memory, q.x);
+    f.spring.limit = norm(kept);
+    f.spring.z = (1 / f.spring.stiffness) * kept;
+    return f;
+  }
+  const Vec3 kept = kept_pull(s, q.memory, q.lag.x);
+  f.near = nearest(s, q.lag.x);
+  f.spring.limit = setup_->friction * std::max(0.0, -q.lag.function_multiplier[at(s)]);
+  f.spring.normal = f.near.normal;
+  const auto nodes = nodes_[s];
+  Vec3 slip = (1 / f.spring.stiffness) * kept;
+  for (std::size_t i = 0; i < nodes.size() && !q.increment.before.empty(); ++i)
+    slip += share(s, i, f.near) * (q.x[at(nodes[i])] - q.increment.before[at(nodes[i])]);
+  f.spring.z = slip - dot(slip, f.near.normal) * f.near.normal;
+  return f;
+}
+
+void SurfaceContactPool::evaluate(const StencilRequest& q, const StencilSlots& slots) const {
+  const bool slips = setup_->friction > 0 && !q.lag.x.empty();
+  for (Index s = q.begin; s < q.end; ++s) {
+    slots.energy[at(s)] = 0;
+    if (!close(s)) {
+      slots.value[at(s)] = setup_->open;
+      continue;
+    }
+    const auto nodes = nodes_[s];
+    const std::size_t n = nodes.size(), first = at(nodes_.offset[at(s)]);
+    const PatchPoint near = nearest(s, q.x);
+    const bool exists = std::isfinite(near.distance);
+    slots.value[at(s)] = exists ? near.distance - setup_->offset : setup_->open;
+    Friction f;
+    if (setup_->friction > 0) {
+      f = friction(q, s);
+      slots.energy[at(s)] = f.spring.energy();
+    }
+    if (q.want == Want::value) continue;
+    const double multiplier = q.function_multiplier[at(s)];
+    const Vec3 force = slips ? f.spring.pull() : Vec3{};
+    std::array<double, kMost> share_of{}, rub{};
+    for (std::size_t i = 0; i < n; ++i) {
+      share_of[i] = share(s, i, near);
+      rub[i] = slips ? share(s, i, f.near) : 0;
+      slots.jacobian[first + i] = share_of[i] * near.normal;
+      slots.gradient[first + i] = multiplier * share_of[i] * near.normal + rub[i] * force;
+    }
+    if (q.want != Want::hessian) continue;
+    Mat3* blocks = slots.hessian.data() + hessian_offset()[at(s)];
+    std::fill_n(blocks, n * (n + 1) / 2, Mat3{});
+    const auto own = static_cast<std::size_t>(setup_->skin->points()[at(s)].nodes);
+    if (multiplier != 0 && exists) {
+      std::array<Vec3, kPatchNodes> corner{};
+      for (std::size_t k = own; k < n; ++k) corner[k - own] = q.x[at(nodes[k])];
+      add_patch_curvature(near, corner, multiplier, q.definiteness != Definiteness::exact,
+                          std::span(share_of).first(n), own, blocks);
+    }
+    if (!slips || !(f.spring.limit > 0)) continue;
+    const Mat3 plane = f.spring.curvature();
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j <= i; ++j) {
+        for (std::size_t e = 0; e < 9; ++e) blocks[i * (i + 1) / 2 + j].m[e] += rub[i] * rub[j] * plane.m[e];
+      }
+    }
+  }
+}
+
+void SurfaceContactPool::accept(const StencilRequest& q, std::span<double> memory) const {
+  const auto per = static_cast<std::size_t>(memory_per_point());
+  for (Index s = 0; s < stencils(); ++s) {
+    double* m = memory.data() + per * at(s);
+    m[0] = center_[at(s)] + 1;
+    if (per == 1) continue;
+    const Vec3 own = close(s) ? transposed_times(axes(s, q.x), friction(q, s).spring.pull()) : Vec3{};
+    for (int i = 0; i < 3; ++i) m[1 + i] = own[i];
+  }
+}
+
+bool SurfaceContactPool::in_patch(Index center, Index triangle, Index s) const {
+  if (center == triangle) return true;
+  if (center < 0) return false;
+  const Skin& skin = *setup_->skin;
+  const Skin::Around around = skin.around(center, s);
+  const auto& c = skin.corners(triangle);
+  for (std::size_t t = 0; t < around.patch.triangles; ++t) {
+    const auto& p = around.patch.corner[t];
+    if (around.node[p[0]] == c[0] && around.node[p[1]] == c[1] && around.node[p[2]] == c[2]) return true;
+  }
+  return false;
+}
+
+FollowAnswer SurfaceContactPool::followed(const FollowRequest& q) const {
+  const Skin& skin = *setup_->skin;
+  const double small = 1e-3 * skin.size(), deep = 0.5 * skin.size();
+  std::vector<Skin::Finding> found(center_.size());
+  skin.search(q.from, q.x, reach(), q.parallel, found);
+  std::vector<Index> base = center_;
+  if (!q.memory.empty()) {
+    const auto per = static_cast<std::size_t>(memory_per_point());
+    for (std::size_t s = 0; s < base.size(); ++s) base[s] = static_cast<Index>(q.memory[per * s]) - 1;
+  }
+  FollowAnswer answer;
+  bool needed = false;
+  std::vector<Index> target(center_.size(), -1);
+  for (Index s = 0; s < stencils(); ++s) {
+    const Skin::Finding& f = found[at(s)];
+    const Index c = base[at(s)];
+    const double gap = f.nearest >= 0 ? f.distance - setup_->offset : setup_->open;
+    target[at(s)] = f.nearest;
+    const bool seen = f.nearest >= 0 && in_patch(c, f.nearest, s);
+    if (f.crossed >= 0 && !(seen && f.distance < 0 && f.distance > -deep)) {
+      // Through a triangle, and not merely a little into what is nearest now.
+      if (!(f.nearest >= 0 && f.distance < 0 && f.distance > -deep)) target[at(s)] = f.crossed;
+      if (!in_patch(c, f.crossed, s)) {
+        ++answer.crossed;
+        needed = true;
+        continue;
+      }
+      target[at(s)] = c;
+      if (q.solved && center_[at(s)] == c && nearest(s, q.x).distance >= 0) ++answer.passing;
+      continue;
+    }
+    if (f.nearest < 0 && c >= 0 && center_[at(s)] == c) {
+      // Deeper than the search reaches, or turned away from what it was close to.
+      const bool inside = nearest(s, q.x).distance < setup_->offset;
+      if (inside && skin.facing(s, c, q.x)) target[at(s)] = c;
+      needed = needed || (inside && target[at(s)] != c);
+    }
+    if (f.nearest < 0 || seen) continue;
+    if (!q.solved) {
+      needed = needed || gap < 0.4 * reach();
+    } else if (c < 0) {
+      needed = needed || gap < 0;
+    } else {
+      const double present = nearest(s, q.x).distance;
+      needed = needed ||
+               (std::min(f.distance, present) < setup_->offset && std::abs(f.distance - present) > small);
+    }
+  }
+  if (!needed) target = base;
+  if (target != center_) answer.pool = std::make_shared<SurfaceContactPool>(setup_, std::move(target));
+  return answer;
+}
+
+}  // namespace isochor
