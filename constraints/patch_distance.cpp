@@ -25,76 +25,102 @@ void add_outer(Mat3& m, double s, const Vec3& a, const Vec3& b) {
   }
 }
 
-// Sum of the unit normals of the triangles that have all corners of the feature, those at a corner weighted
-// by their angles.
-Vec3 outward(const PatchPoint& n, std::span<const Vec3> x, const Patch& patch) {
-  Vec3 sum{};
-  for (std::size_t t = 0; t < patch.triangles; ++t) {
-    const auto& c = patch.corner[t];
-    std::size_t shared = 0, place = 0;
-    for (std::size_t k = 0; k <= n.dimensions; ++k) {
-      const auto found = std::find(c.begin(), c.end(), n.corner[k]);
-      if (found == c.end()) continue;
-      ++shared;
-      place = static_cast<std::size_t>(found - c.begin());
-    }
-    if (shared != n.dimensions + 1) continue;
-    const Vec3 u = x[c[(place + 1) % 3]] - x[c[place]], v = x[c[(place + 2) % 3]] - x[c[place]];
-    const Vec3 area = cross(u, v);
-    sum += (n.dimensions == 0 ? std::atan2(norm(area), dot(u, v)) : 1) * direction(area);
-  }
-  return sum;
+Vec3 triangle_normal(const std::array<std::uint8_t, 3>& c, std::span<const Vec3> x) {
+  return direction(cross(x[c[1]] - x[c[0]], x[c[2]] - x[c[0]]));
 }
 
-}  // namespace
+// The triangle of the patch on the other side of an edge; the number of triangles where there is none.
+std::size_t across(const Patch& patch, std::size_t triangle, std::uint8_t a, std::uint8_t b) {
+  std::size_t t = 0;
+  for (; t < patch.triangles; ++t) {
+    const auto& c = patch.corner[t];
+    if (t != triangle && !patch.side[t] && std::find(c.begin(), c.end(), a) != c.end() &&
+        std::find(c.begin(), c.end(), b) != c.end())
+      break;
+  }
+  return t;
+}
 
-PatchPoint nearest_on_patch(const Vec3& p, std::span<const Vec3> x, const Patch& patch) {
+// The plane of a triangle and the foot of the point on it, which need not be within the triangle.
+void use_plane(const Vec3& p, std::span<const Vec3> x, const std::array<std::uint8_t, 3>& c,
+               PatchPoint& out) {
+  const Vec3 u = x[c[1]] - x[c[0]], v = x[c[2]] - x[c[0]], w = p - x[c[0]], area = cross(u, v);
+  const double whole = dot(area, area);
+  const double second = dot(area, cross(w, v)) / whole, third = dot(area, cross(u, w)) / whole;
+  out.at_edge = false;
+  out.corner = c;
+  out.normal = direction(area);
+  out.distance = out.height = dot(w, out.normal);
+  out.weight = {};
+  out.weight[c[0]] = 1 - second - third;
+  out.weight[c[1]] = second;
+  out.weight[c[2]] = third;
+}
+
+// Without the sides.
+PatchPoint nearest_on_surface(const Vec3& p, std::span<const Vec3> x, const Patch& patch) {
   PatchPoint best;
   double square = std::numeric_limits<double>::infinity();
   best.distance = square;
+  std::size_t triangle = 0;
+  TrianglePoint nearest;
   Vec3 r{};
   for (std::size_t t = 0; t < patch.triangles; ++t) {
     const auto& c = patch.corner[t];
-    if (cross(x[c[1]] - x[c[0]], x[c[2]] - x[c[0]]) == Vec3{}) continue;
+    if (patch.side[t] || cross(x[c[1]] - x[c[0]], x[c[2]] - x[c[0]]) == Vec3{}) continue;
     const TrianglePoint found = nearest_on_triangle(p, x[c[0]], x[c[1]], x[c[2]]);
     Vec3 way = p;
     for (std::size_t k = 0; k < 3; ++k) way -= found.weight[k] * x[c[k]];
     if (!(dot(way, way) < square)) continue;
     square = dot(way, way);
     r = way;
-    best.weight = {};
-    for (std::size_t k = 0; k < 3; ++k) best.weight[c[k]] = found.weight[k];
-    best.corner = c;
-    best.dimensions = 2;
-    if (found.edge >= 0) {
-      const auto e = static_cast<std::size_t>(found.edge);
-      best.dimensions = 1;
-      best.corner = {c[e], c[(e + 1) % 3], 0};
-    } else if (found.corner >= 0) {
-      best.dimensions = 0;
-      best.corner = {c[static_cast<std::size_t>(found.corner)], 0, 0};
-    }
+    triangle = t;
+    nearest = found;
   }
   if (!std::isfinite(square)) return best;
-  const Vec3 out = outward(best, x, patch);
-  if (best.dimensions == 2) {
-    best.normal = out;
-    best.distance = dot(r, out);
-    return best;
+  const auto& c = patch.corner[triangle];
+  const Vec3 n = triangle_normal(c, x);
+  if (nearest.edge >= 0) {
+    const auto e = static_cast<std::size_t>(nearest.edge);
+    const std::size_t other = across(patch, triangle, c[e], c[(e + 1) % 3]);
+    if (other < patch.triangles) {
+      best.at_edge = true;
+      best.corner = {c[e], c[(e + 1) % 3], 0};
+      for (std::size_t k = 0; k < 3; ++k) best.weight[c[k]] = nearest.weight[k];
+      const Vec3 out = n + triangle_normal(patch.corner[other], x);
+      const double length = std::sqrt(square);
+      best.distance = best.height = dot(r, out) < 0 ? -length : length;
+      // On the surface itself directions from the nearest point are noise.
+      const double size = norm(x[c[1]] - x[c[0]]);
+      best.normal = length > 1e-10 * size ? (1 / best.distance) * r : direction(out);
+      return best;
+    }
   }
-  const double length = std::sqrt(square);
-  best.distance = dot(r, out) < 0 ? -length : length;
-  // On the surface itself directions from the nearest point are noise.
-  const double size = norm(x[patch.corner[0][1]] - x[patch.corner[0][0]]);
-  best.normal = length > 1e-10 * size ? (1 / best.distance) * r : direction(out);
+  use_plane(p, x, c, best);
+  return best;
+}
+
+}  // namespace
+
+PatchPoint nearest_on_patch(const Vec3& p, std::span<const Vec3> x, const Patch& patch) {
+  PatchPoint best = nearest_on_surface(p, x, patch);
+  if (!std::isfinite(best.distance)) return best;
+  for (std::size_t t = 0; t < patch.triangles; ++t) {
+    const auto& c = patch.corner[t];
+    if (!patch.side[t] || cross(x[c[1]] - x[c[0]], x[c[2]] - x[c[0]]) == Vec3{}) continue;
+    PatchPoint aside;
+    use_plane(p, x, c, aside);
+    aside.distance -= patch.margin;
+    if (aside.distance > best.distance) best = aside;
+  }
   return best;
 }
 
 void add_patch_curvature(const PatchPoint& point, std::span<const Vec3> x, double factor, bool bending_alone,
                          std::span<const double> coefficient, std::size_t first, Mat3* blocks) {
   const Vec3& n = point.normal;
-  const double d = point.distance;
-  const std::size_t dimensions = point.dimensions, count = coefficient.size();
+  const double d = point.height;
+  const std::size_t dimensions = point.at_edge ? 1 : 2, count = coefficient.size();
   // Tangents, and the inverse of their metric.
   std::array<Vec3, 2> tangent{}, dual{};
   double inverse[2][2] = {{0, 0}, {0, 0}};
@@ -112,8 +138,8 @@ void add_patch_curvature(const PatchPoint& point, std::span<const Vec3> x, doubl
     for (std::size_t b = 0; b < dimensions; ++b) dual[a] += inverse[a][b] * tangent[b];
   }
   Mat3 bending;
-  const double size = dimensions > 0 ? norm(tangent[0]) : norm(x[point.corner[0]] - x[0]);
-  const bool bends = dimensions < 2 && std::abs(d) > 1e-9 * size && !(bending_alone && factor / d < 0);
+  const bool bends =
+      point.at_edge && std::abs(d) > 1e-9 * norm(tangent[0]) && !(bending_alone && factor / d < 0);
   if (bends) {
     for (int i = 0; i < 3; ++i) bending(i, i) = factor / d;
     add_outer(bending, -factor / d, n, n);

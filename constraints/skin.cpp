@@ -14,8 +14,16 @@ Vec3 area_vector(const std::array<Index, 3>& c, std::span<const Vec3> x) {
   return 0.5 * cross(x[at(c[1])] - x[at(c[0])], x[at(c[2])] - x[at(c[0])]);
 }
 
+// How far beside a border a point may be to come into contact and to stay in it, over the size of a face.
+constexpr double kEnter = 1e-3, kLeave = 0.05;
+
 double norm(const Vec3& v) {
   return std::sqrt(dot(v, v));
+}
+
+// Normals at 105 degrees or more. Those of two sides that are flush are perpendicular, give or take a strain.
+bool face_each_other(const Vec3& n, const Vec3& m) {
+  return dot(n, m) < -0.25 * norm(n) * norm(m);
 }
 
 }  // namespace
@@ -48,21 +56,62 @@ Skin::Skin(const std::array<std::vector<Index>, 2>& sides, std::span<const Vec3>
     });
   }
   size_ = corner_.empty() ? 0 : edges / static_cast<double>(3 * corner_.size());
+  split_at_sharp_edges(rest);
   add_points(rest);
+}
+
+// Surfaces go on smoothly up to a fold of 60 degrees.
+void Skin::split_at_sharp_edges(std::span<const Vec3> rest) {
+  constexpr double least_cosine = 0.5;
+  side_across_.assign(corner_.size(), {-1, -1, -1});
+  for (std::size_t t = 0; t < corner_.size(); ++t) {
+    for (Index& other : across_[t]) {
+      if (other < 0) continue;
+      const Vec3 n = area_vector(corner_[t], rest), m = area_vector(corner_[at(other)], rest);
+      if (dot(n, m) >= least_cosine * norm(n) * norm(m)) continue;
+      // Outward when the far corner of the neighbor is below the plane.
+      Vec3 far{};
+      for (const Index c : corner_[at(other)]) far += rest[at(c)] - rest[at(corner_[t][0])];
+      if (dot(n, far) < 0) side_across_[t][static_cast<std::size_t>(&other - across_[t].data())] = other;
+      other = -1;
+    }
+  }
+}
+
+// Numbers of the parts that sharp edges leave, by triangle.
+std::vector<Index> Skin::sheets() const {
+  std::vector<Index> sheet(corner_.size(), -1), waiting;
+  Index count = 0;
+  for (Index t = 0; t < triangles(); ++t) {
+    if (sheet[at(t)] >= 0) continue;
+    sheet[at(t)] = count;
+    waiting.assign(1, t);
+    while (!waiting.empty()) {
+      const Index next = waiting.back();
+      waiting.pop_back();
+      for (const Index other : across_[at(next)]) {
+        if (other < 0 || sheet[at(other)] >= 0) continue;
+        sheet[at(other)] = count;
+        waiting.push_back(other);
+      }
+    }
+    ++count;
+  }
+  return sheet;
 }
 
 // The Newton-Cotes rule of degree three, all of whose weights are positive: corners, middles of edges, the
 // middle of the triangle. Neighbors share its points, so they sample corners and edges of a surface.
 void Skin::add_points(std::span<const Vec3> rest) {
   constexpr double at_corner = 1.0 / 20, at_edge = 2.0 / 15, at_middle = 9.0 / 20;
-  std::map<std::pair<int, std::array<Index, 3>>, std::size_t> known;
+  const std::vector<Index> sheet = sheets();
+  std::map<std::pair<Index, std::array<Index, 3>>, std::size_t> known;
   std::vector<std::vector<Index>> around;
   const auto add = [&](std::array<Index, 3> node, int nodes, Index triangle, double area) {
     std::sort(node.begin(), node.begin() + nodes);
-    const int side = side_[at(triangle)];
-    const auto [it, fresh] = known.emplace(std::pair(side, node), points_.size());
+    const auto [it, fresh] = known.emplace(std::pair(sheet[at(triangle)], node), points_.size());
     if (fresh) {
-      points_.push_back({node, nodes, side, 0});
+      points_.push_back({node, nodes, side_[at(triangle)], sheet[at(triangle)], 0});
       around.emplace_back();
     }
     points_[it->second].area += area;
@@ -92,12 +141,14 @@ bool Skin::touches(Index triangle, const SkinPoint& point) const {
 bool Skin::facing(Index s, Index triangle, std::span<const Vec3> x) const {
   Vec3 own{};
   for (const Index t : at_point_[s]) own += area_vector(corner_[at(t)], x);
-  return dot(area_vector(corner_[at(triangle)], x), own) < 0;
+  return face_each_other(area_vector(corner_[at(triangle)], x), own);
 }
 
 Skin::Around Skin::around(Index triangle, Index point) const {
   Around out;
-  const auto add = [&](Index t) {
+  out.patch.margin = kLeave * size_;
+  const auto add = [&](Index t, bool side) {
+    out.patch.side[out.patch.triangles] = side;
     auto& corner = out.patch.corner[out.patch.triangles++];
     for (std::size_t k = 0; k < 3; ++k) {
       const Index n = corner_[at(t)][k];
@@ -107,15 +158,28 @@ Skin::Around Skin::around(Index triangle, Index point) const {
       corner[k] = place;
     }
   };
-  add(triangle);
+  add(triangle, false);
   for (const Index t : across_[at(triangle)]) {
-    if (t >= 0 && !touches(t, points_[at(point)])) add(t);
+    if (t >= 0 && !touches(t, points_[at(point)])) add(t, false);
+  }
+  for (const Index t : side_across_[at(triangle)]) {
+    if (t >= 0 && !touches(t, points_[at(point)])) add(t, true);
   }
   return out;
 }
 
+bool Skin::in_patch(Index center, Index triangle, Index point) const {
+  if (center == triangle) return true;
+  if (center < 0) return false;
+  const auto& smooth = across_[at(center)];
+  const auto& sides = side_across_[at(center)];
+  return (std::find(smooth.begin(), smooth.end(), triangle) != smooth.end() ||
+          std::find(sides.begin(), sides.end(), triangle) != sides.end()) &&
+         !touches(triangle, points_[at(point)]);
+}
+
 Skin::Finding Skin::find(Index s, std::span<const Vec3> from, std::span<const Vec3> x, double reach,
-                         std::span<const Box> boxes) const {
+                         Index center, std::span<const Box> boxes) const {
   const SkinPoint& point = points_[at(s)];
   const auto other = static_cast<std::size_t>(single_ ? 0 : 1 - point.side);
   const Vec3 p0 = point.position(from), p1 = point.position(x);
@@ -134,12 +198,25 @@ Skin::Finding Skin::find(Index s, std::span<const Vec3> from, std::span<const Ve
         const Vec3 &a = x[at(c[0])], &b = x[at(c[1])], &d = x[at(c[2])];
         // Surfaces that touch face each other; what lies beside a point on its own surface does not.
         const Vec3 normal = cross(b - a, d - a);
-        if (!(dot(normal, own) < 0)) return;
+        if (!face_each_other(normal, own)) return;
         if (single_ && touches(t, point)) return;
         const auto near = nearest_on_triangle(p1, a, b, d);
         const Vec3 r = p1 - (near.weight[0] * a + near.weight[1] * b + near.weight[2] * d);
         const double distance = dot(r, r);
-        if (distance < square || (distance == square && found.nearest >= 0 && t < found.nearest)) {
+        // Beyond a border nothing is below the point.
+        const auto open = [&](int edge) {
+          const auto k = static_cast<std::size_t>(edge);
+          return across_[at(t)][k] < 0 && side_across_[at(t)][k] < 0;
+        };
+        bool border = near.edge >= 0 && open(near.edge);
+        if (near.corner >= 0) border = open(near.corner) || open((near.corner + 2) % 3);
+        if (border) {
+          const Vec3 aside = r - (dot(r, normal) / dot(normal, normal)) * normal;
+          const double most = (in_patch(center, t, s) ? kLeave : kEnter) * size_;
+          border = dot(aside, aside) > most * most;
+        }
+        if (!border &&
+            (distance < square || (distance == square && found.nearest >= 0 && t < found.nearest))) {
           square = distance;
           found.nearest = t;
           found.distance = dot(r, normal) < 0 ? -std::sqrt(distance) : std::sqrt(distance);
@@ -154,8 +231,8 @@ Skin::Finding Skin::find(Index s, std::span<const Vec3> from, std::span<const Ve
   return found;
 }
 
-void Skin::search(std::span<const Vec3> from, std::span<const Vec3> x, double reach, const Parallel* parallel,
-                  std::span<Finding> out) const {
+void Skin::search(std::span<const Vec3> from, std::span<const Vec3> x, double reach,
+                  std::span<const Index> center, const Parallel* parallel, std::span<Finding> out) const {
   std::array<std::vector<Box>, 2> boxes;
   for (std::size_t side = 0; side < 2; ++side) {
     boxes[side] = tree_[side].fitted([&](Index i) {
@@ -171,7 +248,7 @@ void Skin::search(std::span<const Vec3> from, std::span<const Vec3> x, double re
   const auto look = [&](Index begin, Index end) {
     for (Index s = begin; s < end; ++s) {
       const auto other = static_cast<std::size_t>(single_ ? 0 : 1 - points_[at(s)].side);
-      out[at(s)] = find(s, from, x, reach, boxes[other]);
+      out[at(s)] = find(s, from, x, reach, center[at(s)], boxes[other]);
     }
   };
   const auto count = static_cast<Index>(points_.size());

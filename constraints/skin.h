@@ -8,11 +8,13 @@
 
 namespace isochor {
 
-// A point of a surface: a corner, the middle of an edge or that of a triangle.
+// A point of a surface: a corner, the middle of an edge or that of a triangle. On a sharp edge there is one
+// for each of the sheets that meet there.
 struct SkinPoint {
   std::array<Index, 3> node{-1, -1, -1};
   int nodes = 1;    // their mean is the point
   int side = 0;     // 0 or 1
+  Index sheet = 0;  // part of the surface between sharp edges
   double area = 0;  // that it stands for, at rest [m^2]
 
   double weight() const { return 1.0 / nodes; }
@@ -38,8 +40,9 @@ class Skin {
   // Mean edge of a triangle at rest [m], over all of them.
   double size() const { return size_; }
 
-  // The patch around a triangle as a point sees it, neighbors that the point belongs to left out, and its
-  // nodes in the scene.
+  // The patch around a triangle as a point sees it: its neighbors across edges, but those that the point
+  // belongs to, and its nodes in the scene. Sharp edges that bulge outward lead to sides; those that turn
+  // inward end it.
   struct Around {
     Patch patch;
     std::array<Index, kPatchNodes> node{};
@@ -50,23 +53,28 @@ class Skin {
   bool facing(Index point, Index triangle, std::span<const Vec3> x) const;
 
   struct Finding {
-    Index nearest = -1;  // triangle that faces the point, within reach at x
+    Index nearest = -1;  // triangle that faces the point and has it above or below it, within reach at x
     double distance = 0;
     Index crossed = -1;  // triangle that the point went through from front to back on its way
   };
-  // For every point, over the straight way of all nodes from `from` to `x`.
-  void search(std::span<const Vec3> from, std::span<const Vec3> x, double reach, const Parallel* parallel,
-              std::span<Finding> out) const;
+  // For every point, over the straight way of all nodes from `from` to `x`. `center`: the triangle by point
+  // that its patch is around now, or -1; what a point is in contact with it leaves a little later than it
+  // would enter.
+  void search(std::span<const Vec3> from, std::span<const Vec3> x, double reach,
+              std::span<const Index> center, const Parallel* parallel, std::span<Finding> out) const;
+  bool in_patch(Index center, Index triangle, Index point) const;
 
  private:
   void add_points(std::span<const Vec3> rest);
-  Finding find(Index point, std::span<const Vec3> from, std::span<const Vec3> x, double reach,
+  Finding find(Index point, std::span<const Vec3> from, std::span<const Vec3> x, double reach, Index center,
                std::span<const Box> boxes) const;
+  void split_at_sharp_edges(std::span<const Vec3> rest);
+  std::vector<Index> sheets() const;
   bool touches(Index triangle, const SkinPoint& point) const;
 
   bool single_ = true;
   double size_ = 0;
-  std::vector<std::array<Index, 3>> corner_, across_;  // neighbor behind edge k, -1: none
+  std::vector<std::array<Index, 3>> corner_, across_, side_across_;  // neighbor behind edge k, -1: none
   std::vector<int> side_;
   std::vector<SkinPoint> points_;
   Lists at_point_;

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 
 #include "constraints/contact_rows.h"
 #include "constraints/embedding.h"
@@ -24,9 +26,14 @@ constexpr double kLayer = 0.02;
 
 class SurfaceContactInstance final : public EffectInstance {
  public:
-  // `area` by node of the scene: of the surfaces at rest [m^2].
-  SurfaceContactInstance(std::shared_ptr<const ContactRows> rows, Index row_pool, std::vector<double> area)
-      : rows_(std::move(rows)), row_pool_(row_pool), area_(std::move(area)) {}
+  SurfaceContactInstance(std::shared_ptr<const ContactRows> rows, Index row_pool,
+                         std::shared_ptr<const Skin> skin)
+      : rows_(std::move(rows)), row_pool_(row_pool), skin_(std::move(skin)) {
+    for (const SkinPoint& p : skin_->points()) {
+      for (int k = 0; k < p.nodes; ++k)
+        area_[{p.node[static_cast<std::size_t>(k)], p.sheet}] += p.area / p.nodes;
+    }
+  }
 
   void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
     const auto& pool =
@@ -36,7 +43,8 @@ class SurfaceContactInstance final : public EffectInstance {
                             .subspan(at(c.system.first_stencil_memory(rows_->stencil_pool)),
                                      static_cast<std::size_t>(pool.memory()));
     const auto& points = pool.setup().skin->points();
-    std::vector<double> pressed(area_.size(), 0);
+    std::vector<double> pressed(c.state.x.size(), 0), pressed_area(c.state.x.size(), 0);
+    std::set<std::pair<Index, Index>> counted;
     Vec3 force{};
     double normal = 0, tangential = 0, area = 0, gap = std::numeric_limits<double>::infinity();
     for (Index s = 0; s < pool.stencils(); ++s) {
@@ -44,6 +52,11 @@ class SurfaceContactInstance final : public EffectInstance {
       const PatchPoint near = pool.nearest(s, c.state.x);
       if (!std::isfinite(near.distance)) continue;
       gap = std::min(gap, near.distance - pool.setup().offset);
+      // Of the sheets that something is close to.
+      for (int k = 0; k < points[at(s)].nodes; ++k) {
+        const auto place = std::pair(points[at(s)].node[static_cast<std::size_t>(k)], points[at(s)].sheet);
+        if (counted.insert(place).second) pressed_area[at(place.first)] += area_.at(place);
+      }
       const double l = -lambda[at(s)];
       if (!(l > 0)) continue;
       const Vec3 pull = pool.kept_pull(s, memory, c.state.x);
@@ -58,7 +71,7 @@ class SurfaceContactInstance final : public EffectInstance {
     }
     double pressure = 0;
     for (std::size_t i = 0; i < pressed.size(); ++i) {
-      if (area_[i] > 0) pressure = std::max(pressure, pressed[i] / area_[i]);
+      if (pressed_area[i] > 0) pressure = std::max(pressure, pressed[i] / pressed_area[i]);
     }
     const std::string name(rows_->name());
     const auto put = [&](const char* quantity, const char* unit, double value) {
@@ -77,7 +90,8 @@ class SurfaceContactInstance final : public EffectInstance {
  private:
   std::shared_ptr<const ContactRows> rows_;
   Index row_pool_;
-  std::vector<double> area_;
+  std::shared_ptr<const Skin> skin_;
+  std::map<std::pair<Index, Index>, double> area_;  // by node and sheet, at rest [m^2]
 };
 
 class SurfaceContactEffect final : public EffectSource {
@@ -117,10 +131,6 @@ class SurfaceContactEffect final : public EffectSource {
                                    stiffest(builder.body(def_.against.value_or(def_.body)))};
     const double softer = std::min(mu[0], mu[1]);
     auto rows = std::make_shared<ContactRows>(def_.name, def_.resolve_time);
-    std::vector<double> area(builder.rest().size(), 0);
-    for (const SkinPoint& p : setup->skin->points()) {
-      for (int k = 0; k < p.nodes; ++k) area[at(p.node[static_cast<std::size_t>(k)])] += p.area / p.nodes;
-    }
     const double layer = def_.compliance.value_or(kLayer * setup->skin->size() / softer);
     for (const SkinPoint& p : setup->skin->points()) {
       // Both sides carry half of the pressure.
@@ -138,7 +148,7 @@ class SurfaceContactEffect final : public EffectSource {
     rows->stencil_pool = builder.add_stencils(pool);
     const Index row_pool = builder.add_rows(rows);
     return std::unique_ptr<EffectInstance>(
-        std::make_unique<SurfaceContactInstance>(rows, row_pool, std::move(area)));
+        std::make_unique<SurfaceContactInstance>(rows, row_pool, setup->skin));
   }
 
  private:

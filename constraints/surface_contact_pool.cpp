@@ -152,29 +152,16 @@ void SurfaceContactPool::accept(const StencilRequest& q, std::span<double> memor
   }
 }
 
-bool SurfaceContactPool::in_patch(Index center, Index triangle, Index s) const {
-  if (center == triangle) return true;
-  if (center < 0) return false;
-  const Skin& skin = *setup_->skin;
-  const Skin::Around around = skin.around(center, s);
-  const auto& c = skin.corners(triangle);
-  for (std::size_t t = 0; t < around.patch.triangles; ++t) {
-    const auto& p = around.patch.corner[t];
-    if (around.node[p[0]] == c[0] && around.node[p[1]] == c[1] && around.node[p[2]] == c[2]) return true;
-  }
-  return false;
-}
-
 FollowAnswer SurfaceContactPool::followed(const FollowRequest& q) const {
   const Skin& skin = *setup_->skin;
   const double small = 1e-3 * skin.size(), deep = 0.5 * skin.size();
   std::vector<Skin::Finding> found(center_.size());
-  skin.search(q.from, q.x, reach(), q.parallel, found);
   std::vector<Index> base = center_;
   if (!q.memory.empty()) {
     const auto per = static_cast<std::size_t>(memory_per_point());
     for (std::size_t s = 0; s < base.size(); ++s) base[s] = static_cast<Index>(q.memory[per * s]) - 1;
   }
+  skin.search(q.from, q.x, reach(), base, q.parallel, found);
   FollowAnswer answer;
   bool needed = false;
   std::vector<Index> target(center_.size(), -1);
@@ -183,11 +170,11 @@ FollowAnswer SurfaceContactPool::followed(const FollowRequest& q) const {
     const Index c = base[at(s)];
     const double gap = f.nearest >= 0 ? f.distance - setup_->offset : setup_->open;
     target[at(s)] = f.nearest;
-    const bool seen = f.nearest >= 0 && in_patch(c, f.nearest, s);
+    const bool seen = f.nearest >= 0 && skin.in_patch(c, f.nearest, s);
     if (f.crossed >= 0 && !(seen && f.distance < 0 && f.distance > -deep)) {
       // Through a triangle, and not merely a little into what is nearest now.
       if (!(f.nearest >= 0 && f.distance < 0 && f.distance > -deep)) target[at(s)] = f.crossed;
-      if (!in_patch(c, f.crossed, s)) {
+      if (!skin.in_patch(c, f.crossed, s)) {
         ++answer.crossed;
         needed = true;
         continue;
@@ -197,9 +184,10 @@ FollowAnswer SurfaceContactPool::followed(const FollowRequest& q) const {
       continue;
     }
     if (f.nearest < 0 && c >= 0 && center_[at(s)] == c) {
-      // Deeper than the search reaches, or turned away from what it was close to.
-      const bool inside = nearest(s, q.x).distance < setup_->offset;
-      if (inside && skin.facing(s, c, q.x)) target[at(s)] = c;
+      // Deeper than the search reaches; or beside, or turned away from, what it was close to.
+      const double present = nearest(s, q.x).distance;
+      const bool inside = present < setup_->offset;
+      if (present < -0.9 * reach() && skin.facing(s, c, q.x)) target[at(s)] = c;
       needed = needed || (inside && target[at(s)] != c);
     }
     if (f.nearest < 0 || seen) continue;

@@ -56,7 +56,6 @@ class SurfaceContactPool final : public StencilPool {
   Friction friction(const StencilRequest& request, Index s) const;
   Mat3 axes(Index s, std::span<const Vec3> x) const;
   double reach() const { return setup_->offset + 0.75 * setup_->skin->size(); }
-  bool in_patch(Index center, Index triangle, Index s) const;
 
   std::shared_ptr<const Setup> setup_;
   std::vector<Index> center_;

@@ -58,6 +58,12 @@ BodyMeasures World::measures(BodyId body) const {
   if (!w.compile()) return {};
   const BodyData& b = w.builder.body(body);
   BodyMeasures m = measure_body(b, w.system->parts(), w.state.x);
+  double mass = 0;
+  for (Index i = b.first_node; i < b.first_node + b.mesh.node_count(); ++i) {
+    mass += w.system->parts().mass[at(i)];
+    m.center_of_mass += w.system->parts().mass[at(i)] * w.state.x[at(i)];
+  }
+  m.center_of_mass = (1 / mass) * m.center_of_mass;
   // What the rows of the body leave over, summed: the nodal rows of a region add up to its volume change less
   // what their compliance grants. A body with one-field elements grants itself whatever it does.
   const std::vector<double> theta = w.row_residuals();

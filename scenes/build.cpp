@@ -149,6 +149,7 @@ Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, Bui
     built.obstacles.push_back(def.obstacle);
     add(contact(def));
   }
+  for (const auto& def : scene.surface_contacts) add(surface_contact(def));
   if (!error.empty()) return Error{error};
   return {};
 }
@@ -180,6 +181,14 @@ Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
   if (auto r = add_bodies(scene, options, built); !r) return Error{r.error()};
   if (auto r = add_effects(scene, options, built); !r) return Error{r.error()};
   if (auto r = built.world.compile(); !r) return Error{r.error()};
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const Vec3 v = scene.bodies[b].velocity, w = scene.bodies[b].angular_velocity;
+    if (v == Vec3{} && w == Vec3{}) continue;
+    const Vec3 center = built.world.measures(built.bodies[b]).center_of_mass;
+    std::vector<Vec3> all;
+    for (const Vec3& x : built.world.rest_positions(built.bodies[b])) all.push_back(v + cross(w, x - center));
+    if (auto r = built.world.set_velocities(built.bodies[b], all); !r) return Error{r.error()};
+  }
   return built;
 }
 

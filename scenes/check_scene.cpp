@@ -81,6 +81,7 @@ Result<void> check_all_names(const SceneDef& s) {
   if (auto r = check_names("valves", s.valves, plain, seen); !r) return r;
   if (auto r = check_names("rigid_bodies", s.rigid_bodies, plain, seen); !r) return r;
   if (auto r = check_names("contacts", s.contacts, plain, seen); !r) return r;
+  if (auto r = check_names("surface_contacts", s.surface_contacts, plain, seen); !r) return r;
   return check_names("forces", s.forces, plain, seen);
 }
 
@@ -194,6 +195,7 @@ Result<void> check_metric(const SceneDef& s, const MetricDef& m, const std::stri
     case Quantity::contact_area:
     case Quantity::contact_pressure:
     case Quantity::contact_gap:
+      if (has(s.surface_contacts, m.of)) return {};
       return require(where, "contact", s.contacts, m.of);
     case Quantity::reaction_force:
     case Quantity::reaction_moment:

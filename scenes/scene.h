@@ -90,6 +90,8 @@ struct SceneBody {
   std::vector<MaterialDef> materials;
   std::optional<double> guard_stiffness;  // see BodyDef
   double guard_threshold = 0.5;
+  // Dynamics: how the body moves at the start; it turns about its center of mass.
+  Vec3 velocity{}, angular_velocity{};  // [m/s], [rad/s]
 };
 
 // Volume rows of a body; `none` leaves it to its complete one-field energy, which locks near nu = 0.5.
@@ -197,6 +199,7 @@ struct SceneDef {
   std::vector<ValveDef> valves;
   std::vector<RigidBodyDef> rigid_bodies;
   std::vector<ContactDef> contacts;
+  std::vector<SurfaceContactDef> surface_contacts;
   Vec3 gravity{};                             // [m/s^2]
   Curve gravity_amount = Curve::constant(1);  // scales it over time
   AnalysisDef analysis;

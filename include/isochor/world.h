@@ -170,6 +170,7 @@ struct BodyMeasures {
   double volume = 0, rest_volume = 0;  // [m^3]
   double volume_error = 0;             // relative change of volume beyond what the rows' compliance allows
   double min_J = 0, max_J = 0;         // over cells (points of a Tet10)
+  Vec3 center_of_mass{};               // of the masses at the nodes [m]
 };
 
 // Per-node and per-cell results of a body, recovered for output.
@@ -231,6 +232,10 @@ class World {
   // body is at rest there and its rows have no multipliers; the next step starts from this. For materials
   // that live through inversion.
   Result<void> set_positions(BodyId body, std::span<const Vec3> positions);
+
+  // Dynamics: how fast the nodes of a body move, one velocity a node [m/s]. Multi-step schemes forget their
+  // past.
+  Result<void> set_velocities(BodyId body, std::span<const Vec3> velocities);
 
   double time() const;
   // Views of the state's own numbers, valid until the next step or load().

@@ -121,6 +121,8 @@ void describe(Io& io, SceneBody& b) {
   io.list("materials", b.materials);
   io.optional_number("guard_stiffness", b.guard_stiffness);
   io.number("guard_threshold", b.guard_threshold, 0.5);
+  io.vector("velocity", b.velocity, Vec3{});
+  io.vector("angular_velocity", b.angular_velocity, Vec3{});
 }
 
 template <class Io>
@@ -260,6 +262,21 @@ void describe(Io& io, ContactDef& c) {
   io.text("against", c.against);
   io.optional_object("obstacle", c.obstacle, c.against.empty());
   io.number("compliance", c.compliance, 0.0);
+  io.number("friction", c.friction, 0.0);
+  io.number("stick_stiffness", c.stick_stiffness, 0.0);
+  io.word("initial_overlap", c.initial_overlap, InitialOverlap::report);
+  io.number("resolve_time", c.resolve_time, 1.0);
+}
+
+template <class Io>
+void describe(Io& io, SurfaceContactDef& c) {
+  io.required_text("name", c.name);
+  io.body("body", c.body);
+  io.names("surfaces", c.surfaces);
+  io.optional_body("against", c.against);
+  io.names("against_surfaces", c.against_surfaces);
+  io.optional_number("compliance", c.compliance);
+  io.number("thickness", c.thickness, 0.0);
   io.number("friction", c.friction, 0.0);
   io.number("stick_stiffness", c.stick_stiffness, 0.0);
   io.word("initial_overlap", c.initial_overlap, InitialOverlap::report);
@@ -432,6 +449,7 @@ void describe(Io& io, SceneDef& s) {
   io.list("valves", s.valves);
   io.list("rigid_bodies", s.rigid_bodies);
   io.list("contacts", s.contacts);
+  io.list("surface_contacts", s.surface_contacts);
   io.vector("gravity", s.gravity, Vec3{});
   io.curve("gravity_amount", s.gravity_amount, CurveStart::zero, !(s.gravity == Vec3{}));
   io.list("probes", s.probes);

@@ -35,6 +35,7 @@ class KeyList {
     add(degrees, "number");
   }
   void body(const char* key, BodyId&) { add(key, "text"); }
+  void optional_body(const char* key, std::optional<BodyId>&) { add(key, "text"); }
   void curve(const char* key, Curve&, CurveStart, bool) { add(key, "curve"); }
   void required_curve(const char* key, Curve&, CurveStart) { add(key, "curve"); }
   void note(const char* key) { add(key, "text"); }

@@ -299,6 +299,13 @@ void Reader::body(const char* key, BodyId& value) {
   value = static_cast<BodyId>(it - context_.bodies.begin());
 }
 
+void Reader::optional_body(const char* key, std::optional<BodyId>& value) {
+  if (!find(key)) return;
+  BodyId id{};
+  body(key, id);
+  value = id;
+}
+
 void Reader::read_plain_curve(double end, Curve& value, CurveStart start) const {
   if (context_.analysis == AnalysisType::dynamics || start == CurveStart::constant)
     value = Curve::constant(end);

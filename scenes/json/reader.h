@@ -55,6 +55,7 @@ class Reader {
   void directions(const char* key, std::vector<Vec3>& value);  // "xz", or vectors
   void angle(const char* radians, const char* degrees, double& value);
   void body(const char* key, BodyId& value);
+  void optional_body(const char* key, std::optional<BodyId>& value);
   void curve(const char* key, Curve& value, CurveStart start, bool matters);
   void required_curve(const char* key, Curve& value, CurveStart start);
   void note(const char* key);

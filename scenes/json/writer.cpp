@@ -46,6 +46,10 @@ void Writer::body(const char* key, BodyId value) {
   if (b > 0 && b < scene_.bodies.size()) json_[key] = scene_.bodies[b].name;
 }
 
+void Writer::optional_body(const char* key, const std::optional<BodyId>& value) {
+  if (value) json_[key] = scene_.bodies[static_cast<std::size_t>(*value)].name;
+}
+
 void Writer::required_curve(const char* key, const Curve& value, CurveStart start) {
   const auto& p = value.points;
   const bool constant = scene_.analysis.type == AnalysisType::dynamics || start == CurveStart::constant;

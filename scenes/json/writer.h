@@ -64,6 +64,7 @@ class Writer {
   void directions(const char* key, const std::vector<Vec3>& value);
   void angle(const char* radians, const char*, double value) { json_[radians] = plain_number(value); }
   void body(const char* key, BodyId value);
+  void optional_body(const char* key, const std::optional<BodyId>& value);
   void curve(const char* key, const Curve& value, CurveStart start, bool matters) {
     if (matters) required_curve(key, value, start);
   }
