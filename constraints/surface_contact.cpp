@@ -145,6 +145,7 @@ class SurfaceContactEffect final : public EffectSource {
     if (start.pool) pool = start.pool;
     if (auto r = find_overlap(builder, static_cast<const SurfaceContactPool&>(*pool), *rows); !r)
       return Error{r.error()};
+    rows->largest_overshoot = 0.25 * setup->skin->size();
     rows->stencil_pool = builder.add_stencils(pool);
     const Index row_pool = builder.add_rows(rows);
     return std::unique_ptr<EffectInstance>(

@@ -171,9 +171,10 @@ FollowAnswer SurfaceContactPool::followed(const FollowRequest& q) const {
     const double gap = f.nearest >= 0 ? f.distance - setup_->offset : setup_->open;
     target[at(s)] = f.nearest;
     const bool seen = f.nearest >= 0 && skin.in_patch(c, f.nearest, s);
-    if (f.crossed >= 0 && !(seen && f.distance < 0 && f.distance > -deep)) {
-      // Through a triangle, and not merely a little into what is nearest now.
-      if (!(f.nearest >= 0 && f.distance < 0 && f.distance > -deep)) target[at(s)] = f.crossed;
+    if (f.crossed >= 0 && !(f.nearest >= 0 && std::abs(f.distance) < deep)) {
+      // Through a triangle and far behind it, rather than a little into what is nearest now, or back in
+      // front.
+      target[at(s)] = f.crossed;
       if (!skin.in_patch(c, f.crossed, s)) {
         ++answer.crossed;
         needed = true;

@@ -274,6 +274,21 @@ bool Newton::settle_venture(const SaddleProblem& p, std::span<Vec3> x, std::span
   return false;
 }
 
+// The part of a step up to tau after which no row that its bound has let go is violated too much.
+double Newton::longest_step(double tau) {
+  const auto most = system_->row_overshoot();
+  if (most.empty() || !any_clamped_) return tau;
+  assembly_.jacobian_times(dx_, row_work_);
+  for (std::size_t r = 0; r < most.size(); ++r) {
+    if (!clamped_[r] || !std::isfinite(most[r])) continue;
+    // Away from zero, on the side that the bound does not hold.
+    const double sign = bound_[r] == system_->row_upper()[r] ? -1 : 1;
+    const double way = sign * row_work_[r], left = most[r] - sign * theta_[r];
+    if (way * tau > left && left > 0) tau = left / way;
+  }
+  return tau;
+}
+
 // Backtracking to sufficient decrease; a shortened step is then polished by up to two parabolas, because
 // evaluations cost a few percent of the factorization that a better step saves.
 bool Newton::search(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda,
@@ -287,6 +302,7 @@ bool Newton::search(const SaddleProblem& p, std::span<Vec3> x, std::span<double>
   double longest = 0;
   for (const Vec3& d : dx_) longest = std::max(longest, norm(d));
   double tau = longest > 100 * s.length() ? 100 * s.length() / longest : 1;
+  const double most = tau = longest_step(tau);
   double value = 0;
   bool accepted = false;
   for (int trial = 0; trial < 40 && tau > 1e-10; ++trial) {
@@ -320,9 +336,9 @@ bool Newton::search(const SaddleProblem& p, std::span<Vec3> x, std::span<double>
     }
   }
   if (!accepted) return false;
-  for (int polish = 0; polish < 2 && tau < 1; ++polish) {
+  for (int polish = 0; polish < 2 && tau < most; ++polish) {
     const double next =
-        std::min(1.0, std::clamp(parabola_minimum(tau, start, slope, value), 0.3 * tau, 3 * tau));
+        std::min(most, std::clamp(parabola_minimum(tau, start, slope, value), 0.3 * tau, 3 * tau));
     if (std::abs(next - tau) < 0.15 * tau) break;
     const double other = try_step(p, next, x, lambda, report);
     if (!(other < value)) {

@@ -41,6 +41,7 @@ class Newton : public SaddlePoint {
                std::span<double> lambda, SaddleReport& report);
   double merit(const SaddleProblem& p, double tau, std::span<const double> lambda) const;
   double merit_slope(std::span<const double> lambda);
+  double longest_step(double tau);
   double try_step(const SaddleProblem& p, double tau, std::span<const Vec3> x, std::span<const double> lambda,
                   SaddleReport& report);
   bool may_venture() const;

@@ -187,6 +187,9 @@ class RowPool {
   // none. A cable that only pulls has lower = 0. A bounded row reads: lambda is where the projection of
   // lambda + theta / metric on the bounds leaves it, theta = phi - target - C lambda (complementarity).
   std::vector<double> lower, upper;
+  // How far a row that its bound has let go may be violated at the end of an iteration, in the unit of phi:
+  // longer steps are cut. For gaps to what is thin, which a long step would leave behind.
+  double largest_overshoot = std::numeric_limits<double>::infinity();
 
   // A law c(lambda) in place of C lambda (a gas, say): the row is phi - target - c(lambda) = 0 and
   // `compliance` only names the places of dc/dlambda. The law must be non-decreasing (dc/dlambda positive

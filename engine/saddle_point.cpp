@@ -208,7 +208,10 @@ SaddlePoint::Residuals SaddlePoint::measure(const SaddleProblem& p, std::span<co
                                             std::span<const double> lambda) const {
   const System& s = *system_;
   double force = 0, reference = 0, row = 0, position = 0;
-  const double floor = 1e-6 * s.length();
+  // Far from the origin, coordinates have fewer digits to tell a deformation by.
+  double farthest = 0;
+  for (const Vec3& at_node : x) farthest = std::max(farthest, dot(at_node, at_node));
+  const double floor = 1e-6 * std::max(s.length(), std::sqrt(farthest));
   for (Index i = 0; i < s.nodes(); ++i) {
     const double k = stiffness_[at(i)];
     if (k <= 0) continue;

@@ -321,6 +321,9 @@ class SystemCompiler {
       const auto first = s_->first_row_[p];
       std::copy(pool.lower.begin(), pool.lower.end(), s_->row_lower_.begin() + first);
       std::copy(pool.upper.begin(), pool.upper.end(), s_->row_upper_.begin() + first);
+      if (!std::isfinite(pool.largest_overshoot)) continue;
+      s_->row_overshoot_.resize(at(s_->rows_), infinity);
+      std::fill_n(s_->row_overshoot_.begin() + first, pool.rows(), pool.largest_overshoot);
     }
     for (const auto& pool : s_->parts_.stencil_pools) {
       s_->first_stencil_memory_.push_back(s_->memory_);

@@ -114,6 +114,8 @@ class System {
   std::span<const double> row_lower() const { return row_lower_; }
   std::span<const double> row_upper() const { return row_upper_; }
   bool has_bounds() const { return !row_lower_.empty(); }
+  // RowPool::largest_overshoot of all compliant rows; empty when all are infinite.
+  std::span<const double> row_overshoot() const { return row_overshoot_; }
   // Numbers that row and stencil pools keep between steps: all, and where those of a pool begin.
   Index memory() const { return memory_; }
   Index first_memory(Index row_pool) const { return first_memory_[at(row_pool)]; }
@@ -146,7 +148,7 @@ class System {
   std::vector<std::int64_t> block_place_, jacobian_place_, compliance_place_, diagonal_place_;
   std::vector<std::array<Index, 2>> block_nodes_, jacobian_ends_;
   std::vector<ComplianceEntry> compliance_;
-  std::vector<double> block_mass_, row_metric_, row_measure_, row_lower_, row_upper_;
+  std::vector<double> block_mass_, row_metric_, row_measure_, row_lower_, row_upper_, row_overshoot_;
   std::vector<LawPlace> laws_;
   std::vector<Index> row_unknown_, kept_rows_, condensed_rows_, bordered_rows_, dual_rows_, filled_rows_;
   std::vector<std::size_t> row_jacobian_begin_, diagonal_compliance_, dual_compliance_;

@@ -169,6 +169,33 @@ void add_contacts(std::vector<SceneCase>& out, Element element) {
   }
 }
 
+// Two bodies a little apart.
+void add_surface_contacts(std::vector<SceneCase>& out, Element element) {
+  for (const double friction : {0.0, 0.4}) {
+    SurfaceContactDef def;
+    def.against = static_cast<BodyId>(1);
+    def.friction = friction;
+    def.thickness = 0.02;
+    def.initial_overlap = InitialOverlap::resolve;
+    SceneCase c = on_block(friction > 0 ? "surface contact with friction" : "surface contact", element,
+                           {"constraints/surface_contact", "constraints/surface_contact_pool",
+                            "constraints/skin", "constraints/patch_distance"},
+                           surface_contact(def));
+    Vec3 low = c.mesh.nodes.front(), high = low;
+    for (const Vec3& p : c.mesh.nodes) {
+      for (int k = 0; k < 3; ++k) {
+        low[k] = std::min(low[k], p[k]);
+        high[k] = std::max(high[k], p[k]);
+      }
+    }
+    c.more_bodies.push_back(mapped(c.mesh, [&](const Vec3& p) {
+      return p + Vec3{0.11, 0.07, high.z - low.z + 0.015};
+    }));
+    c.stress_free = false;  // distances between bodies that are apart
+    out.push_back(c);
+  }
+}
+
 void add_rigid_bodies(std::vector<SceneCase>& out, Element element) {
   for (const auto shape : {ObstacleShape::sphere, ObstacleShape::capsule, ObstacleShape::cylinder,
                            ObstacleShape::box, ObstacleShape::mesh, ObstacleShape::distance_field}) {
@@ -212,6 +239,7 @@ void add_attachments(std::vector<SceneCase>& out) {
     add_threads(out, element);
     add_chambers(out, element);
     add_contacts(out, element);
+    add_surface_contacts(out, element);
     if (element == Element::tet4) add_rigid_bodies(out, element);
   }
 }
