@@ -28,25 +28,47 @@ bool face_each_other(const Vec3& n, const Vec3& m) {
 
 }  // namespace
 
-Skin::Skin(const std::array<std::vector<Index>, 2>& sides, std::span<const Vec3> rest)
-    : single_(sides[1].empty()) {
+void Skin::add_face(std::span<const Index> face, int side) {
+  constexpr std::array<std::array<std::uint8_t, 3>, 4> six{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
+  const auto add = [&](const std::array<std::uint8_t, 3>& local) {
+    Part part;
+    part.nodes = face.size();
+    std::copy(face.begin(), face.end(), part.face.begin());
+    part.local = local;
+    part_.push_back(part);
+    corner_.push_back({face[local[0]], face[local[1]], face[local[2]]});
+    across_.push_back({-1, -1, -1});
+    side_.push_back(side);
+  };
+  if (face.size() == 6) {
+    for (const auto& local : six) add(local);
+  } else if (face.size() == 4) {
+    // The diagonal from the smallest node number, whatever node comes first.
+    const bool even = (std::min_element(face.begin(), face.end()) - face.begin()) % 2 == 0;
+    add(even ? std::array<std::uint8_t, 3>{0, 1, 2} : std::array<std::uint8_t, 3>{1, 2, 3});
+    add(even ? std::array<std::uint8_t, 3>{0, 2, 3} : std::array<std::uint8_t, 3>{1, 3, 0});
+  } else {
+    add({0, 1, 2});
+  }
+}
+
+Skin::Skin(const std::array<SkinFaces, 2>& sides, std::span<const Vec3> rest)
+    : single_(sides[1].faces.empty()) {
   double edges = 0;
   for (std::size_t side = 0; side < 2; ++side) {
     first_[side] = triangles();
+    const auto& [faces, per] = sides[side];
+    for (std::size_t f = 0; f < faces.size(); f += per)
+      add_face(std::span(faces).subspan(f, per), static_cast<int>(side));
     std::map<std::pair<Index, Index>, std::pair<std::size_t, std::size_t>> open;
-    for (std::size_t t = 0; t < sides[side].size(); t += 3) {
-      const std::array<Index, 3> c{sides[side][t], sides[side][t + 1], sides[side][t + 2]};
-      corner_.push_back(c);
-      across_.push_back({-1, -1, -1});
-      side_.push_back(static_cast<int>(side));
+    for (std::size_t t = at(first_[side]); t < corner_.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const Index a = c[k], b = c[(k + 1) % 3];
+        const Index a = corner_[t][k], b = corner_[t][(k + 1) % 3];
         edges += norm(rest[at(b)] - rest[at(a)]);
-        const auto [it, fresh] =
-            open.emplace(std::pair(std::min(a, b), std::max(a, b)), std::pair(corner_.size() - 1, k));
+        const auto [it, fresh] = open.emplace(std::pair(std::min(a, b), std::max(a, b)), std::pair(t, k));
         if (fresh) continue;
-        across_.back()[k] = static_cast<Index>(it->second.first);
-        across_[it->second.first][it->second.second] = triangles() - 1;
+        across_[t][k] = static_cast<Index>(it->second.first);
+        across_[it->second.first][it->second.second] = static_cast<Index>(t);
       }
     }
     tree_[side].build(triangles() - first_[side], [&](Index i) {
@@ -105,34 +127,60 @@ std::vector<Index> Skin::sheets() const {
 void Skin::add_points(std::span<const Vec3> rest) {
   constexpr double at_corner = 1.0 / 20, at_edge = 2.0 / 15, at_middle = 9.0 / 20;
   const std::vector<Index> sheet = sheets();
-  std::map<std::pair<Index, std::array<Index, 3>>, std::size_t> known;
+  // A point is the same for faces that give it the same nodes with the same weights.
+  using Share = std::pair<Index, long>;
+  std::map<std::pair<Index, std::array<Share, kFaceNodes>>, std::size_t> known;
   std::vector<std::vector<Index>> around;
-  const auto add = [&](std::array<Index, 3> node, int nodes, Index triangle, double area) {
-    std::sort(node.begin(), node.begin() + nodes);
-    const auto [it, fresh] = known.emplace(std::pair(sheet[at(triangle)], node), points_.size());
+  const auto add = [&](Index triangle, const std::array<double, 3>& place, double area) {
+    const Part& part = part_[at(triangle)];
+    double u = 0, v = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto uv = face_place(part.nodes, part.local[k]);
+      u += place[k] * uv[0];
+      v += place[k] * uv[1];
+    }
+    const FaceShape shape = face_shape(part.nodes, u, v);
+    std::vector<std::pair<Index, double>> shares;
+    for (std::size_t k = 0; k < part.nodes; ++k) {
+      if (std::abs(shape.N[k]) > 1e-9) shares.emplace_back(part.face[k], shape.N[k]);
+    }
+    std::sort(shares.begin(), shares.end());
+    SkinPoint point;
+    std::array<Share, kFaceNodes> name{};
+    for (const auto& [node, weight] : shares) {
+      name[point.nodes] = {node, std::lround(1e6 * weight)};
+      point.node[point.nodes] = node;
+      point.weight[point.nodes++] = weight;
+    }
+    point.side = side_[at(triangle)];
+    point.sheet = sheet[at(triangle)];
+    const auto [it, fresh] = known.emplace(std::pair(point.sheet, name), points_.size());
     if (fresh) {
-      points_.push_back({node, nodes, side_[at(triangle)], sheet[at(triangle)], 0});
+      points_.push_back(point);
       around.emplace_back();
     }
     points_[it->second].area += area;
     around[it->second].push_back(triangle);
   };
   for (Index t = 0; t < triangles(); ++t) {
-    const auto& c = corner_[at(t)];
-    const double area = norm(area_vector(c, rest));
+    const double area = norm(area_vector(corner_[at(t)], rest));
     for (std::size_t k = 0; k < 3; ++k) {
-      add({c[k], -1, -1}, 1, t, at_corner * area);
-      add({c[k], c[(k + 1) % 3], -1}, 2, t, at_edge * area);
+      std::array<double, 3> corner{}, edge{};
+      corner[k] = 1;
+      edge[k] = edge[(k + 1) % 3] = 0.5;
+      add(t, corner, at_corner * area);
+      add(t, edge, at_edge * area);
     }
-    add(c, 3, t, at_middle * area);
+    add(t, {1.0 / 3, 1.0 / 3, 1.0 / 3}, at_middle * area);
   }
   for (const auto& list : around) at_point_.push(list);
 }
 
 bool Skin::touches(Index triangle, const SkinPoint& point) const {
-  for (const Index c : corner_[at(triangle)]) {
-    for (int k = 0; k < point.nodes; ++k) {
-      if (point.node[static_cast<std::size_t>(k)] == c) return true;
+  const Part& part = part_[at(triangle)];
+  for (std::size_t c = 0; c < part.nodes; ++c) {
+    for (std::size_t k = 0; k < point.nodes; ++k) {
+      if (point.node[k] == part.face[c]) return true;
     }
   }
   return false;
@@ -147,6 +195,12 @@ bool Skin::facing(Index s, Index triangle, std::span<const Vec3> x) const {
 Skin::Around Skin::around(Index triangle, Index point) const {
   Around out;
   out.patch.margin = kLeave * size_;
+  const Part& middle = part_[at(triangle)];
+  const bool curved = middle.nodes > 3;
+  if (curved) {
+    out.patch.face = out.patch.nodes = static_cast<std::uint8_t>(middle.nodes);
+    std::copy_n(middle.face.begin(), middle.nodes, out.node.begin());
+  }
   const auto add = [&](Index t, bool side) {
     out.patch.side[out.patch.triangles] = side;
     auto& corner = out.patch.corner[out.patch.triangles++];
@@ -160,7 +214,7 @@ Skin::Around Skin::around(Index triangle, Index point) const {
   };
   add(triangle, false);
   for (const Index t : across_[at(triangle)]) {
-    if (t >= 0 && !touches(t, points_[at(point)])) add(t, false);
+    if (t >= 0 && !curved && !touches(t, points_[at(point)])) add(t, false);
   }
   for (const Index t : side_across_[at(triangle)]) {
     if (t >= 0 && !touches(t, points_[at(point)])) add(t, true);
@@ -173,7 +227,9 @@ bool Skin::in_patch(Index center, Index triangle, Index point) const {
   if (center < 0) return false;
   const auto& smooth = across_[at(center)];
   const auto& sides = side_across_[at(center)];
-  return (std::find(smooth.begin(), smooth.end(), triangle) != smooth.end() ||
+  if (part_[at(center)].nodes > 3 && part_[at(center)].face == part_[at(triangle)].face) return true;
+  return ((part_[at(center)].nodes == 3 &&
+           std::find(smooth.begin(), smooth.end(), triangle) != smooth.end()) ||
           std::find(sides.begin(), sides.end(), triangle) != sides.end()) &&
          !touches(triangle, points_[at(point)]);
 }
@@ -189,7 +245,7 @@ Skin::Finding Skin::find(Index s, std::span<const Vec3> from, std::span<const Ve
   Vec3 own{};
   for (const Index t : at_point_[s]) own += area_vector(corner_[at(t)], x);
   Finding found;
-  double square = reach * reach, earliest = 2;
+  double square = reach * reach, best_height = 0, earliest = 2;
   tree_[other].visit(
       boxes, [&](const Box& box) { return box.meets(way); },
       [&](Index i) {
@@ -215,9 +271,15 @@ Skin::Finding Skin::find(Index s, std::span<const Vec3> from, std::span<const Ve
           const double most = (in_patch(center, t, s) ? kLeave : kEnter) * size_;
           border = dot(aside, aside) > most * most;
         }
+        // Of triangles that share the nearest corner or edge, the one that the point is most above.
+        const double height = std::abs(dot(r, normal)) / norm(normal);
+        const double same = 1e-9 * square + 1e-20 * size_ * size_;
         if (!border &&
-            (distance < square || (distance == square && found.nearest >= 0 && t < found.nearest))) {
+            (distance < square - same || (distance <= square + same && found.nearest >= 0 &&
+                                          (height > best_height + 1e-9 * size_ ||
+                                           (height > best_height - 1e-9 * size_ && t < found.nearest))))) {
           square = distance;
+          best_height = height;
           found.nearest = t;
           found.distance = dot(r, normal) < 0 ? -std::sqrt(distance) : std::sqrt(distance);
         }

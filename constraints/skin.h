@@ -11,25 +11,31 @@ namespace isochor {
 // A point of a surface: a corner, the middle of an edge or that of a triangle. On a sharp edge there is one
 // for each of the sheets that meet there.
 struct SkinPoint {
-  std::array<Index, 3> node{-1, -1, -1};
-  int nodes = 1;    // their mean is the point
+  std::array<Index, kFaceNodes> node{};
+  std::array<double, kFaceNodes> weight{};
+  std::size_t nodes = 0;
   int side = 0;     // 0 or 1
   Index sheet = 0;  // part of the surface between sharp edges
   double area = 0;  // that it stands for, at rest [m^2]
 
-  double weight() const { return 1.0 / nodes; }
   Vec3 position(std::span<const Vec3> x) const {
     Vec3 p{};
-    for (int k = 0; k < nodes; ++k) p += x[at(node[static_cast<std::size_t>(k)])];
-    return weight() * p;
+    for (std::size_t k = 0; k < nodes; ++k) p += weight[k] * x[at(node[k])];
+    return p;
   }
+};
+
+// Faces of 3, 4 or 6 nodes of the scene, counterclockwise from outside.
+struct SkinFaces {
+  std::vector<Index> faces;
+  std::size_t per = 3;
 };
 
 class Skin {
  public:
-  // Triangles (three scene nodes each, counterclockwise from outside) of one side or two; those of one side
-  // contact the other, those of a single one each other.
-  Skin(const std::array<std::vector<Index>, 2>& sides, std::span<const Vec3> rest);
+  // Those of one side contact the other, those of a single one each other. Faces are searched as triangles:
+  // those of six nodes as four, those of four as two.
+  Skin(const std::array<SkinFaces, 2>& sides, std::span<const Vec3> rest);
 
   Index triangles() const { return static_cast<Index>(corner_.size()); }
   bool single() const { return single_; }
@@ -65,6 +71,13 @@ class Skin {
   bool in_patch(Index center, Index triangle, Index point) const;
 
  private:
+  // A triangle that is searched: part of a face.
+  struct Part {
+    std::size_t nodes = 3;
+    std::array<Index, kFaceNodes> face{};
+    std::array<std::uint8_t, 3> local{0, 1, 2};
+  };
+  void add_face(std::span<const Index> face, int side);
   void add_points(std::span<const Vec3> rest);
   Finding find(Index point, std::span<const Vec3> from, std::span<const Vec3> x, double reach, Index center,
                std::span<const Box> boxes) const;
@@ -75,6 +88,7 @@ class Skin {
   bool single_ = true;
   double size_ = 0;
   std::vector<std::array<Index, 3>> corner_, across_, side_across_;  // neighbor behind edge k, -1: none
+  std::vector<Part> part_;
   std::vector<int> side_;
   std::vector<SkinPoint> points_;
   Lists at_point_;

@@ -30,8 +30,11 @@ class SurfaceContactInstance final : public EffectInstance {
                          std::shared_ptr<const Skin> skin)
       : rows_(std::move(rows)), row_pool_(row_pool), skin_(std::move(skin)) {
     for (const SkinPoint& p : skin_->points()) {
-      for (int k = 0; k < p.nodes; ++k)
-        area_[{p.node[static_cast<std::size_t>(k)], p.sheet}] += p.area / p.nodes;
+      for (std::size_t k = 0; k < p.nodes; ++k) {
+        auto& area = area_[{p.node[k], p.sheet}];
+        area[0] += p.weight[k] * p.area;
+        area[1] += std::abs(p.weight[k]) * p.area;
+      }
     }
   }
 
@@ -43,7 +46,7 @@ class SurfaceContactInstance final : public EffectInstance {
                             .subspan(at(c.system.first_stencil_memory(rows_->stencil_pool)),
                                      static_cast<std::size_t>(pool.memory()));
     const auto& points = pool.setup().skin->points();
-    std::vector<double> pressed(c.state.x.size(), 0), pressed_area(c.state.x.size(), 0);
+    std::vector<double> pressed(c.state.x.size(), 0), pressed_area = pressed, whole_area = pressed;
     std::set<std::pair<Index, Index>> counted;
     Vec3 force{};
     double normal = 0, tangential = 0, area = 0, gap = std::numeric_limits<double>::infinity();
@@ -53,9 +56,12 @@ class SurfaceContactInstance final : public EffectInstance {
       if (!std::isfinite(near.distance)) continue;
       gap = std::min(gap, near.distance - pool.setup().offset);
       // Of the sheets that something is close to.
-      for (int k = 0; k < points[at(s)].nodes; ++k) {
-        const auto place = std::pair(points[at(s)].node[static_cast<std::size_t>(k)], points[at(s)].sheet);
-        if (counted.insert(place).second) pressed_area[at(place.first)] += area_.at(place);
+      for (std::size_t k = 0; k < points[at(s)].nodes; ++k) {
+        const auto place = std::pair(points[at(s)].node[k], points[at(s)].sheet);
+        if (counted.insert(place).second) {
+          pressed_area[at(place.first)] += area_.at(place)[0];
+          whole_area[at(place.first)] += area_.at(place)[1];
+        }
       }
       const double l = -lambda[at(s)];
       if (!(l > 0)) continue;
@@ -67,11 +73,13 @@ class SurfaceContactInstance final : public EffectInstance {
       area += 0.5 * rows_->area[at(s)];
       const auto nodes = pool.nodes()[s];
       for (std::size_t i = 0; i < nodes.size(); ++i)
-        pressed[at(nodes[i])] += l * std::abs(pool.share(s, i, near));
+        pressed[at(nodes[i])] += (i < points[at(s)].nodes ? l : -l) * pool.share(s, i, near);
     }
     double pressure = 0;
     for (std::size_t i = 0; i < pressed.size(); ++i) {
-      if (pressed_area[i] > 0) pressure = std::max(pressure, pressed[i] / pressed_area[i]);
+      // Corners of faces with six nodes have no area of their own.
+      if (pressed_area[i] > 0.2 * whole_area[i] && whole_area[i] > 0)
+        pressure = std::max(pressure, pressed[i] / pressed_area[i]);
     }
     const std::string name(rows_->name());
     const auto put = [&](const char* quantity, const char* unit, double value) {
@@ -91,7 +99,8 @@ class SurfaceContactInstance final : public EffectInstance {
   std::shared_ptr<const ContactRows> rows_;
   Index row_pool_;
   std::shared_ptr<const Skin> skin_;
-  std::map<std::pair<Index, Index>, double> area_;  // by node and sheet, at rest [m^2]
+  std::map<std::pair<Index, Index>, std::array<double, 2>>
+      area_;  // by node and sheet at rest: the sum of shares, and that of their sizes [m^2]
 };
 
 class SurfaceContactEffect final : public EffectSource {
@@ -155,21 +164,23 @@ class SurfaceContactEffect final : public EffectSource {
  private:
   std::string who() const { return "surface contact \"" + def_.name + "\": "; }
 
-  Result<std::array<std::vector<Index>, 2>> both_sides(const Builder& builder,
-                                                       const std::string& called) const {
-    std::array<std::vector<Index>, 2> sides;
-    auto first = surface_triangles(builder, def_.body, def_.surfaces, called);
+  static std::size_t nodes_of_faces(const Builder& builder, BodyId body) {
+    return static_cast<std::size_t>(nodes_per_face(builder.body(body).mesh.cell_type));
+  }
+  Result<std::array<SkinFaces, 2>> both_sides(const Builder& builder, const std::string& called) const {
+    std::array<SkinFaces, 2> sides;
+    auto first = outward_faces(builder, def_.body, def_.surfaces, called);
     if (!first) return Error{first.error()};
-    sides[0] = std::move(first).value();
+    sides[0] = {std::move(first).value(), nodes_of_faces(builder, def_.body)};
     if (!def_.against) {
       if (!def_.against_surfaces.empty())
         return Error{who() + "against_surfaces are named, but not the body in `against` that they belong to"};
       return sides;
     }
-    auto second = surface_triangles(builder, *def_.against, def_.against_surfaces, called);
+    auto second = outward_faces(builder, *def_.against, def_.against_surfaces, called);
     if (!second) return Error{second.error()};
-    sides[1] = std::move(second).value();
-    std::vector<Index> shared = sides[0], other = sides[1], both;
+    sides[1] = {std::move(second).value(), nodes_of_faces(builder, *def_.against)};
+    std::vector<Index> shared = sides[0].faces, other = sides[1].faces, both;
     std::sort(shared.begin(), shared.end());
     std::sort(other.begin(), other.end());
     std::set_intersection(shared.begin(), shared.end(), other.begin(), other.end(), std::back_inserter(both));

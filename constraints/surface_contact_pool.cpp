@@ -7,7 +7,7 @@ namespace isochor {
 
 namespace {
 
-constexpr std::size_t kMost = 3 + kPatchNodes;  // nodes of a stencil
+constexpr std::size_t kMost = kFaceNodes + kPatchNodes;  // nodes of a stencil
 
 double norm(const Vec3& v) {
   return std::sqrt(dot(v, v));
@@ -24,7 +24,7 @@ SurfaceContactPool::SurfaceContactPool(std::shared_ptr<const Setup> setup, std::
     std::size_t count = 0;
     if (center_[at(s)] >= 0) {
       const SkinPoint& point = skin.points()[at(s)];
-      for (std::size_t k = 0; k < static_cast<std::size_t>(point.nodes); ++k) nodes[count++] = point.node[k];
+      for (std::size_t k = 0; k < point.nodes; ++k) nodes[count++] = point.node[k];
       const Skin::Around around = skin.around(center_[at(s)], s);
       for (std::size_t k = 0; k < around.patch.nodes; ++k) nodes[count++] = around.node[k];
       patch_[at(s)] = around.patch;
@@ -36,7 +36,7 @@ SurfaceContactPool::SurfaceContactPool(std::shared_ptr<const Setup> setup, std::
 
 PatchPoint SurfaceContactPool::nearest(Index s, std::span<const Vec3> x) const {
   const SkinPoint& point = setup_->skin->points()[at(s)];
-  const auto nodes = nodes_[s].subspan(static_cast<std::size_t>(point.nodes));
+  const auto nodes = nodes_[s].subspan(point.nodes);
   std::array<Vec3, kPatchNodes> corner{};
   for (std::size_t k = 0; k < nodes.size(); ++k) corner[k] = x[at(nodes[k])];
   return nearest_on_patch(point.position(x), std::span(corner).first(nodes.size()), patch_[at(s)]);
@@ -44,8 +44,7 @@ PatchPoint SurfaceContactPool::nearest(Index s, std::span<const Vec3> x) const {
 
 double SurfaceContactPool::share(Index s, std::size_t i, const PatchPoint& near) const {
   const SkinPoint& point = setup_->skin->points()[at(s)];
-  const auto own = static_cast<std::size_t>(point.nodes);
-  return i < own ? point.weight() : -near.weight[i - own];
+  return i < point.nodes ? point.weight[i] : -near.weight[i - point.nodes];
 }
 
 // Turn with the first triangle of the point.
@@ -124,12 +123,9 @@ void SurfaceContactPool::evaluate(const StencilRequest& q, const StencilSlots& s
     if (q.want != Want::hessian) continue;
     Mat3* blocks = slots.hessian.data() + hessian_offset()[at(s)];
     std::fill_n(blocks, n * (n + 1) / 2, Mat3{});
-    const auto own = static_cast<std::size_t>(setup_->skin->points()[at(s)].nodes);
     if (multiplier != 0 && exists) {
-      std::array<Vec3, kPatchNodes> corner{};
-      for (std::size_t k = own; k < n; ++k) corner[k - own] = q.x[at(nodes[k])];
-      add_patch_curvature(near, corner, multiplier, q.definiteness != Definiteness::exact,
-                          std::span(share_of).first(n), own, blocks);
+      add_patch_curvature(near, multiplier, q.definiteness != Definiteness::exact,
+                          std::span(share_of).first(n), setup_->skin->points()[at(s)].nodes, blocks);
     }
     if (!slips || !(f.spring.limit > 0)) continue;
     const Mat3 plane = f.spring.curvature();

@@ -64,8 +64,8 @@ Result<std::vector<Index>> surface_faces(const Builder& builder, BodyId id,
   return boundary_faces(builder.body(id));
 }
 
-Result<std::vector<Index>> surface_triangles(const Builder& builder, BodyId id,
-                                             std::span<const std::string> surfaces, const std::string& who) {
+Result<std::vector<Index>> outward_faces(const Builder& builder, BodyId id,
+                                         std::span<const std::string> surfaces, const std::string& who) {
   auto named = surface_faces(builder, id, surfaces, who);
   if (!named) return Error{named.error()};
   const BodyData& body = builder.body(id);
@@ -81,23 +81,12 @@ Result<std::vector<Index>> surface_triangles(const Builder& builder, BodyId id,
   std::set<std::array<Index, 4>> wanted;
   for (std::size_t f = 0; f < named.value().size(); f += per)
     wanted.insert(key(std::span(named.value()).subspan(f, per)));
-  std::vector<Index> triangles;
+  std::vector<Index> faces;
   for (std::size_t f = 0; f < boundary.size(); f += per) {
     const auto face = std::span(boundary).subspan(f, per);
-    if (wanted.erase(key(face)) == 0) continue;
-    if (per == 3) {
-      triangles.insert(triangles.end(), face.begin(), face.end());
-    } else if (per == 6) {
-      for (const auto& part : kParts) {
-        for (const std::size_t k : part) triangles.push_back(face[k]);
-      }
-    } else {
-      const auto first = static_cast<std::size_t>(std::min_element(face.begin(), face.end()) - face.begin());
-      for (const std::size_t k : {1u, 2u})
-        triangles.insert(triangles.end(), {face[first], face[(first + k) % 4], face[(first + k + 1) % 4]});
-    }
+    if (wanted.erase(key(face)) > 0) faces.insert(faces.end(), face.begin(), face.end());
   }
-  if (wanted.empty()) return triangles;
+  if (wanted.empty()) return faces;
   return Error{who + ": " + std::to_string(wanted.size()) +
                " faces of its surfaces are inside the body; name surfaces of the boundary"};
 }

@@ -10,10 +10,9 @@ namespace isochor {
 Result<std::vector<Index>> surface_faces(const Builder& builder, BodyId body,
                                          std::span<const std::string> surfaces, const std::string& who);
 
-// The same faces as triangles that are wound outward, three corners each: faces of six nodes as four, those
-// of four as two that share the diagonal from the smallest node number.
-Result<std::vector<Index>> surface_triangles(const Builder& builder, BodyId body,
-                                             std::span<const std::string> surfaces, const std::string& who);
+// The same faces wound outward, whichever way a name has them. Faces inside the body are refused.
+Result<std::vector<Index>> outward_faces(const Builder& builder, BodyId body,
+                                         std::span<const std::string> surfaces, const std::string& who);
 
 struct SurfaceNode {
   Index node = -1;

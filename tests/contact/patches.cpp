@@ -71,14 +71,14 @@ TEST_CASE(
     for (unsigned seed = 0; seed < 5; ++seed) {
       Sample s = sample(place.fold, place.point, seed);
       const PatchPoint p = nearest_on_patch(s.point, s.corner, full_patch());
-      INFO("fold " << place.fold << ", seed " << seed << ", at an edge " << p.at_edge);
-      CHECK(p.at_edge == place.at_edge);
+      INFO("fold " << place.fold << ", seed " << seed << ", at an edge " << (p.dimensions == 1));
+      CHECK((p.dimensions == 1) == place.at_edge);
       const auto g = gradient(s);
       std::array<double, 7> coefficient{1};
       for (std::size_t k = 0; k < 6; ++k) coefficient[k + 1] = -p.weight[k];
       std::array<Mat3, 28> blocks{};
       constexpr double factor = -1.7;
-      add_patch_curvature(p, s.corner, factor, false, coefficient, 1, blocks.data());
+      add_patch_curvature(p, factor, false, coefficient, 1, blocks.data());
       const double h = 1e-6;
       double worst_gradient = 0, worst_curvature = 0;
       for (std::size_t l = 0; l < 7; ++l) {
@@ -94,6 +94,62 @@ TEST_CASE(
           for (std::size_t k = 0; k < 7; ++k) {
             for (int i = 0; i < 3; ++i) {
               const double expected = factor * (above[k][i] - below[k][i]) / (2 * h);
+              const double found =
+                  k >= l ? blocks[k * (k + 1) / 2 + l](i, j) : blocks[l * (l + 1) / 2 + k](j, i);
+              worst_curvature = std::max(worst_curvature, std::abs(found - expected));
+            }
+          }
+        }
+      }
+      CHECK(worst_gradient < 1e-8);
+      CHECK(worst_curvature < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("distances to faces of four and six nodes: gradient and curvature against differences") {
+  for (const std::size_t nodes : {std::size_t{4}, std::size_t{6}}) {
+    Patch patch;
+    patch.face = patch.nodes = static_cast<std::uint8_t>(nodes);
+    patch.triangles = 1;
+    patch.corner[0] =
+        nodes == 4 ? std::array<std::uint8_t, 3>{0, 1, 2} : std::array<std::uint8_t, 3>{3, 4, 5};
+    for (unsigned seed = 0; seed < 6; ++seed) {
+      std::mt19937 random(seed);
+      std::uniform_real_distribution<double> noise(-0.12, 0.12);
+      std::array<Vec3, 7> y{};
+      y[0] = {0.45 + noise(random), 0.3 + noise(random), seed % 2 == 0 ? 0.15 : -0.2};
+      for (std::size_t k = 0; k < nodes; ++k) {
+        const auto uv = face_place(nodes, k);
+        y[k + 1] = {uv[0] + noise(random), uv[1] + noise(random), noise(random)};
+      }
+      const auto at_place = [&](const std::array<Vec3, 7>& z) {
+        return nearest_on_patch(z[0], std::span(z).subspan(1, nodes), patch);
+      };
+      const auto slope_at = [&](const std::array<Vec3, 7>& z, std::size_t k) {
+        const PatchPoint p = at_place(z);
+        return (k == 0 ? 1.0 : -p.weight[k - 1]) * p.normal;
+      };
+      const PatchPoint p = at_place(y);
+      INFO(nodes << " nodes, seed " << seed);
+      CHECK((p.bend[0] != 0 || p.bend[1] != 0));
+      CHECK((p.distance > 0) == (seed % 2 == 0));
+      std::array<double, 7> coefficient{1};
+      for (std::size_t k = 0; k < nodes; ++k) coefficient[k + 1] = -p.weight[k];
+      std::array<Mat3, 28> blocks{};
+      add_patch_curvature(p, 2.3, false, std::span(coefficient).first(nodes + 1), 1, blocks.data());
+      double worst_gradient = 0, worst_curvature = 0;
+      const double h = 1e-6;
+      for (std::size_t l = 0; l <= nodes; ++l) {
+        for (int j = 0; j < 3; ++j) {
+          auto up = y, down = y;
+          up[l][j] += h;
+          down[l][j] -= h;
+          const double slope = (at_place(up).distance - at_place(down).distance) / (2 * h);
+          worst_gradient = std::max(worst_gradient, std::abs(slope - slope_at(y, l)[j]));
+          for (std::size_t k = 0; k <= nodes; ++k) {
+            for (int i = 0; i < 3; ++i) {
+              const double expected = 2.3 * (slope_at(up, k)[i] - slope_at(down, k)[i]) / (2 * h);
               const double found =
                   k >= l ? blocks[k * (k + 1) / 2 + l](i, j) : blocks[l * (l + 1) / 2 + k](j, i);
               worst_curvature = std::max(worst_curvature, std::abs(found - expected));
@@ -136,7 +192,7 @@ TEST_CASE("a point goes through a moving triangle from the front when it does") 
 
 TEST_CASE("points of a surface stand for its area, and integrate cubics over it") {
   std::vector<Vec3> x{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}};
-  const Skin skin({std::vector<Index>{0, 1, 2, 0, 2, 3}, {}}, x);
+  const Skin skin({SkinFaces{{0, 1, 2, 0, 2, 3}, 3}, {}}, x);
   double area = 0, cubic = 0;
   for (const SkinPoint& p : skin.points()) {
     const Vec3 q = p.position(x);
@@ -148,7 +204,7 @@ TEST_CASE("points of a surface stand for its area, and integrate cubics over it"
   CHECK(skin.points().size() == 4 + 5 + 2);
   // Folded at a right angle, the corners and the middle of the edge between the two belong to both.
   x[3] = {1, 0.5, 2};
-  CHECK(Skin({std::vector<Index>{0, 1, 2, 0, 2, 3}, {}}, x).points().size() == 4 + 5 + 2 + 3);
+  CHECK(Skin({SkinFaces{{0, 1, 2, 0, 2, 3}, 3}, {}}, x).points().size() == 4 + 5 + 2 + 3);
 }
 
 TEST_CASE("the search finds what brute force finds") {
@@ -157,15 +213,15 @@ TEST_CASE("the search finds what brute force finds") {
   const Mesh lower = test::value(box_mesh(def));
   std::vector<Vec3> x = lower.nodes;
   const auto count = static_cast<Index>(x.size());
-  std::array<std::vector<Index>, 2> sides;
+  std::array<SkinFaces, 2> sides;
   for (const auto& surface : lower.surfaces) {
     for (std::size_t f = 0; f < surface.faces.size(); f += 3) {
       std::array<Index, 3> c{surface.faces[f], surface.faces[f + 1], surface.faces[f + 2]};
       const Vec3 a = x[at(c[0])], n = cross(x[at(c[1])] - a, x[at(c[2])] - a);
       if (dot(n, a - Vec3{0.5, 0.5, 0.5}) < 0) std::swap(c[1], c[2]);
       for (const Index i : c) {
-        sides[0].push_back(i);
-        sides[1].push_back(i + count);
+        sides[0].faces.push_back(i);
+        sides[1].faces.push_back(i + count);
       }
     }
   }

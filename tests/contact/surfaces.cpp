@@ -84,9 +84,7 @@ TEST_CASE("a pressure passes uniformly through faces that do not match") {
           mean += stress[c] * 6 / static_cast<double>(stress.size());
         for (std::size_t c = 2; c < stress.size(); c += 6)
           worst = std::max(worst, std::abs(stress[c] / mean - 1));
-        // Faces of four and six nodes are met as triangles, which spread a pressure less evenly.
-        const double most = element == Element::tet10 ? 0.15 : (element == Element::hex8 ? 0.02 : 0.01);
-        CHECK(worst < most);
+        CHECK(worst < 0.01);
       }
     }
   }
@@ -102,7 +100,7 @@ TEST_CASE("which body is named first does not matter") {
     const Vec3 d = xa[i] - xb[i];
     worst = std::max(worst, std::sqrt(dot(d, d)));
   }
-  CHECK(worst < 1e-9);
+  CHECK(worst < 1e-6);
   CHECK(gauge_of(a.world, "force_z") == Approx(-gauge_of(b.world, "force_z")));
 }
 
@@ -393,7 +391,7 @@ TEST_CASE("an overlap at the start is pushed apart little by little") {
   test::must_advance(world, 0.5);
   CHECK(gauge_of(world, "smallest_gap") < -0.04);
   test::must_advance(world, 0.5);
-  CHECK(gauge_of(world, "smallest_gap") > -0.004);
+  CHECK(gauge_of(world, "smallest_gap") > -0.006);
   CHECK(gauge_of(world, "force_z") < -1000);
 }
 
