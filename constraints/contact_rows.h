@@ -14,7 +14,8 @@ class ContactRows final : public RowPool {
   std::string_view name() const override { return name_; }
   void update(double t, std::span<double> value) const override {
     const double left = std::max(0.0, 1 - t / resolve_time_);
-    for (std::size_t r = 0; r < value.size(); ++r) value[r] = overlap.empty() ? 0 : left * overlap[r];
+    for (std::size_t r = 0; r < value.size(); ++r)
+      value[r] = (overlap.empty() ? 0 : left * overlap[r]) + (allowed.empty() ? 0 : allowed[r]);
   }
 
   // `compliance` [m/Pa] of the layer, 0: hard; mu: shear modulus that pressures are compared with [Pa].
@@ -32,6 +33,7 @@ class ContactRows final : public RowPool {
 
   std::vector<double> area;     // [m^2]
   std::vector<double> overlap;  // gap at the start where it is below zero, else zero [m]; empty: none is
+  std::vector<double> allowed;  // the same for overlap that stays; empty: none does
 
  private:
   std::string name_;

@@ -16,6 +16,8 @@ Vec3 area_vector(const std::array<Index, 3>& c, std::span<const Vec3> x) {
 
 // How far beside a border a point may be to come into contact and to stay in it, over the size of a face.
 constexpr double kEnter = 1e-3, kLeave = 0.05;
+// Depth, over the same, that is rounding.
+constexpr double kShallow = 1e-3;
 
 double norm(const Vec3& v) {
   return std::sqrt(dot(v, v));
@@ -244,8 +246,20 @@ Skin::Finding Skin::find(Index s, std::span<const Vec3> from, std::span<const Ve
   way = way.grown(reach);
   Vec3 own{};
   for (const Index t : at_point_[s]) own += area_vector(corner_[at(t)], x);
+  // Within one body, what is behind a triangle may be the other side of its own wall: there depth counts only
+  // once the point went in from the front.
+  bool inside = !single_;
+  if (single_ && center >= 0) {
+    const auto& c = corner_[at(center)];
+    inside = dot(area_vector(c, x), p1 - x[at(c[0])]) < 0;
+  }
+  struct Candidate {
+    Index triangle = -1;
+    double square, height = 0, distance = 0;
+  };
   Finding found;
-  double square = reach * reach, best_height = 0, earliest = 2;
+  Candidate from_front{-1, reach * reach, 0, 0}, any = from_front;
+  double earliest = 2;
   tree_[other].visit(
       boxes, [&](const Box& box) { return box.meets(way); },
       [&](Index i) {
@@ -272,17 +286,18 @@ Skin::Finding Skin::find(Index s, std::span<const Vec3> from, std::span<const Ve
           border = dot(aside, aside) > most * most;
         }
         // Of triangles that share the nearest corner or edge, the one that the point is most above.
-        const double height = std::abs(dot(r, normal)) / norm(normal);
-        const double same = 1e-9 * square + 1e-20 * size_ * size_;
-        if (!border &&
-            (distance < square - same || (distance <= square + same && found.nearest >= 0 &&
-                                          (height > best_height + 1e-9 * size_ ||
-                                           (height > best_height - 1e-9 * size_ && t < found.nearest))))) {
-          square = distance;
-          best_height = height;
-          found.nearest = t;
-          found.distance = dot(r, normal) < 0 ? -std::sqrt(distance) : std::sqrt(distance);
-        }
+        const double height = dot(r, normal) / norm(normal);
+        const auto keep = [&](Candidate& best) {
+          const double same = 1e-9 * best.square + 1e-20 * size_ * size_,
+                       higher = std::abs(height) - best.height;
+          const bool closer = distance < best.square - same;
+          const bool equal = distance <= best.square + same && best.triangle >= 0;
+          if (!closer && !(equal && (higher > 1e-9 * size_ || (higher > -1e-9 * size_ && t < best.triangle))))
+            return;
+          best = {t, distance, std::abs(height), height < 0 ? -std::sqrt(distance) : std::sqrt(distance)};
+        };
+        if (!border) keep(any);
+        if (!border && height > -kShallow * size_) keep(from_front);
         const double time =
             crossing_time({p0, from[at(c[0])], from[at(c[1])], from[at(c[2])]}, {p1, a, b, d});
         if (time < earliest || (time <= 1 && time == earliest && t < found.crossed)) {
@@ -290,6 +305,9 @@ Skin::Finding Skin::find(Index s, std::span<const Vec3> from, std::span<const Ve
           found.crossed = t;
         }
       });
+  const Candidate& best = inside || found.crossed >= 0 ? any : from_front;
+  found.nearest = best.triangle;
+  found.distance = best.distance;
   return found;
 }
 

@@ -194,17 +194,26 @@ class SurfaceContactEffect final : public EffectSource {
   Result<void> find_overlap(const Builder& builder, const SurfaceContactPool& pool, ContactRows& rows) const {
     Index worst = -1, inside = 0;
     double deepest = -1e-9 * builder.length();
-    std::vector<double> overlap(rows.area.size(), 0.0);
+    std::vector<double> overlap(rows.area.size(), 0.0), allowed = overlap;
+    // In the groove between two flanks of one body facets are a little below each other.
+    const double groove = pool.setup().skin->single() ? 0.02 * pool.setup().skin->size() : 0;
+    bool grooved = false;
     for (Index s = 0; s < pool.stencils(); ++s) {
       if (!pool.close(s)) continue;
       const double gap = pool.nearest(s, builder.rest()).distance - def_.thickness;
       if (!std::isfinite(gap)) continue;
+      if (gap < 0 && gap >= -groove) {
+        allowed[at(s)] = gap;
+        grooved = true;
+        continue;
+      }
       overlap[at(s)] = std::min(gap, 0.0);
       if (gap < -1e-9 * builder.length()) ++inside;
       if (gap >= deepest) continue;
       deepest = gap;
       worst = s;
     }
+    if (grooved) rows.allowed = std::move(allowed);
     if (worst < 0) return {};
     if (def_.initial_overlap == InitialOverlap::resolve) {
       rows.overlap = std::move(overlap);
