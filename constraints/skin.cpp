@@ -188,6 +188,12 @@ bool Skin::touches(Index triangle, const SkinPoint& point) const {
   return false;
 }
 
+bool Skin::neighbors(Index t, Index other) const {
+  const auto &a = corner_[at(t)], &b = corner_[at(other)];
+  return std::any_of(a.begin(), a.end(),
+                     [&](Index n) { return std::find(b.begin(), b.end(), n) != b.end(); });
+}
+
 bool Skin::facing(Index s, Index triangle, std::span<const Vec3> x) const {
   Vec3 own{};
   for (const Index t : at_point_[s]) own += area_vector(corner_[at(t)], x);
@@ -246,68 +252,74 @@ Skin::Finding Skin::find(Index s, std::span<const Vec3> from, std::span<const Ve
   way = way.grown(reach);
   Vec3 own{};
   for (const Index t : at_point_[s]) own += area_vector(corner_[at(t)], x);
-  // Within one body, what is behind a triangle may be the other side of its own wall: there depth counts only
-  // once the point went in from the front.
-  bool inside = !single_;
-  if (single_ && center >= 0) {
-    const auto& c = corner_[at(center)];
-    inside = dot(area_vector(c, x), p1 - x[at(c[0])]) < 0;
-  }
   struct Candidate {
     Index triangle = -1;
-    double square, height = 0, distance = 0;
+    double square = 0, height = 0;
   };
+  // How a triangle that faces the point lies to it; no triangle where it does not count.
+  const auto look_at = [&](Index t) {
+    const auto& c = corner_[at(t)];
+    const Vec3 &a = x[at(c[0])], &b = x[at(c[1])], &d = x[at(c[2])];
+    const Vec3 normal = cross(b - a, d - a);
+    const TrianglePoint near = nearest_on_triangle(p1, a, b, d);
+    const Vec3 r = p1 - (near.weight[0] * a + near.weight[1] * b + near.weight[2] * d);
+    const double height = dot(r, normal) / norm(normal), square = dot(r, r);
+    // Beyond a border nothing is below the point.
+    const auto open = [&](int edge) {
+      const auto k = static_cast<std::size_t>(edge);
+      return across_[at(t)][k] < 0 && side_across_[at(t)][k] < 0;
+    };
+    bool border = near.edge >= 0 && open(near.edge);
+    if (near.corner >= 0) border = open(near.corner) || open((near.corner + 2) % 3);
+    const double most = (in_patch(center, t, s) ? kLeave : kEnter) * size_;
+    if (border && square - height * height > most * most) return Candidate{};
+    return Candidate{t, square, height};
+  };
+  // Of triangles that share the nearest corner or edge, the one that the point is most above.
+  const auto keep = [&](Candidate& best, const Candidate& c) {
+    if (c.triangle < 0) return;
+    const double same = 1e-9 * best.square + 1e-20 * size_ * size_;
+    const double higher = std::abs(c.height) - std::abs(best.height);
+    const bool equal = c.square <= best.square + same && best.triangle >= 0 &&
+                       (higher > 1e-9 * size_ || (higher > -1e-9 * size_ && c.triangle < best.triangle));
+    if (c.square < best.square - same || equal) best = c;
+  };
+  // Within one body, what is behind a triangle may be the other side of its own wall: there depth counts only
+  // next to where the point went in from the front.
+  Index entered = -1;
+  if (single_ && center >= 0) {
+    const auto& c = corner_[at(center)];
+    if (dot(area_vector(c, x), p1 - x[at(c[0])]) < 0) entered = center;
+  }
   Finding found;
-  Candidate from_front{-1, reach * reach, 0, 0}, any = from_front;
+  Candidate best{-1, reach * reach, 0};
   double earliest = 2;
-  tree_[other].visit(
-      boxes, [&](const Box& box) { return box.meets(way); },
-      [&](Index i) {
-        const Index t = first_[other] + i;
-        const auto& c = corner_[at(t)];
-        const Vec3 &a = x[at(c[0])], &b = x[at(c[1])], &d = x[at(c[2])];
-        // Surfaces that touch face each other; what lies beside a point on its own surface does not.
-        const Vec3 normal = cross(b - a, d - a);
-        if (!face_each_other(normal, own)) return;
-        if (single_ && touches(t, point)) return;
-        const auto near = nearest_on_triangle(p1, a, b, d);
-        const Vec3 r = p1 - (near.weight[0] * a + near.weight[1] * b + near.weight[2] * d);
-        const double distance = dot(r, r);
-        // Beyond a border nothing is below the point.
-        const auto open = [&](int edge) {
-          const auto k = static_cast<std::size_t>(edge);
-          return across_[at(t)][k] < 0 && side_across_[at(t)][k] < 0;
-        };
-        bool border = near.edge >= 0 && open(near.edge);
-        if (near.corner >= 0) border = open(near.corner) || open((near.corner + 2) % 3);
-        if (border) {
-          const Vec3 aside = r - (dot(r, normal) / dot(normal, normal)) * normal;
-          const double most = (in_patch(center, t, s) ? kLeave : kEnter) * size_;
-          border = dot(aside, aside) > most * most;
-        }
-        // Of triangles that share the nearest corner or edge, the one that the point is most above.
-        const double height = dot(r, normal) / norm(normal);
-        const auto keep = [&](Candidate& best) {
-          const double same = 1e-9 * best.square + 1e-20 * size_ * size_,
-                       higher = std::abs(height) - best.height;
-          const bool closer = distance < best.square - same;
-          const bool equal = distance <= best.square + same && best.triangle >= 0;
-          if (!closer && !(equal && (higher > 1e-9 * size_ || (higher > -1e-9 * size_ && t < best.triangle))))
-            return;
-          best = {t, distance, std::abs(height), height < 0 ? -std::sqrt(distance) : std::sqrt(distance)};
-        };
-        if (!border) keep(any);
-        if (!border && height > -kShallow * size_) keep(from_front);
-        const double time =
-            crossing_time({p0, from[at(c[0])], from[at(c[1])], from[at(c[2])]}, {p1, a, b, d});
-        if (time < earliest || (time <= 1 && time == earliest && t < found.crossed)) {
-          earliest = time;
-          found.crossed = t;
-        }
-      });
-  const Candidate& best = inside || found.crossed >= 0 ? any : from_front;
+  const auto faces = [&](Index t) {
+    const auto& c = corner_[at(t)];
+    // Surfaces that touch face each other; what lies beside a point on its own surface does not.
+    return face_each_other(area_vector(c, x), own) && !(single_ && touches(t, point));
+  };
+  const auto enter = [&](const Box& box) { return box.meets(way); };
+  tree_[other].visit(boxes, enter, [&](Index i) {
+    const Index t = first_[other] + i;
+    if (!faces(t)) return;
+    const Candidate c = look_at(t);
+    if (!single_ || c.height > -kShallow * size_ || (entered >= 0 && neighbors(t, entered))) keep(best, c);
+    const auto& corner = corner_[at(t)];
+    const double time = crossing_time({p0, from[at(corner[0])], from[at(corner[1])], from[at(corner[2])]},
+                                      {p1, x[at(corner[0])], x[at(corner[1])], x[at(corner[2])]});
+    if (time < earliest || (time <= 1 && time == earliest && t < found.crossed)) {
+      earliest = time;
+      found.crossed = t;
+    }
+  });
+  if (single_ && found.crossed >= 0) {
+    tree_[other].visit(boxes, enter, [&](Index i) {
+      if (neighbors(i, found.crossed) && faces(i)) keep(best, look_at(i));
+    });
+  }
   found.nearest = best.triangle;
-  found.distance = best.distance;
+  found.distance = best.height < 0 ? -std::sqrt(best.square) : std::sqrt(best.square);
   return found;
 }
 

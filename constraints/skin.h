@@ -84,6 +84,7 @@ class Skin {
   void split_at_sharp_edges(std::span<const Vec3> rest);
   std::vector<Index> sheets() const;
   bool touches(Index triangle, const SkinPoint& point) const;
+  bool neighbors(Index triangle, Index other) const;  // share a node, or are the same
 
   bool single_ = true;
   double size_ = 0;

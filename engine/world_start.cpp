@@ -16,8 +16,8 @@ Result<void> check_nodes(const char* call, const char* what, const BodyData& bod
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isfinite(values[i].x + values[i].y + values[i].z)) continue;
-    return Error{std::string(call) + ": entry " + std::to_string(i) + " of the " + what + " of body \"" +
-                 body.name + "\" is not a finite number"};
+    return Error{std::string(call) + ": of the " + what + ", that of node " + std::to_string(i) +
+                 " of body \"" + body.name + "\" is not a finite number"};
   }
   return {};
 }

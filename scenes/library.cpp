@@ -35,6 +35,8 @@ constexpr auto kScenes = std::to_array<LibraryScene>({
     {"squeezed_block", "Block pressed between cylinders and released", squeezed_block},
     {"gripper", "Three pneumatic fingers lift a rigid ball and hold it by friction", gripper},
     {"indented_puck", "Incompressible puck indented by a sphere", indented_puck},
+    {"bellows", "Bellows that folds onto itself as air is drawn out", bellows},
+    {"colliding_balls", "Two incompressible balls that collide off center", colliding_balls},
 });
 
 }  // namespace

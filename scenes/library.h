@@ -53,5 +53,7 @@ SceneDef incline(const SceneVariant& variant = {});
 SceneDef squeezed_block(const SceneVariant& variant = {});
 SceneDef gripper(const SceneVariant& variant = {});
 SceneDef indented_puck(const SceneVariant& variant = {});
+SceneDef bellows(const SceneVariant& variant = {});
+SceneDef colliding_balls(const SceneVariant& variant = {});
 
 }  // namespace isochor

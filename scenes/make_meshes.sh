@@ -47,6 +47,7 @@ arm                         arm               1  h=0.0125
 ball                        ball              1  h=0.0080
 ball_small                  ball              1  h=0.0190
 indented_puck               indented_puck     1  h=0.0080
+bellows                     bellows           1  h=0.0045
 cushion_1                   cushion           1  h=0.0140
 cushion_3                   cushion           1  h=0.0066
 cushion_2_tet10             cushion           2  h=0.0085

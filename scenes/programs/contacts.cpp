@@ -231,4 +231,62 @@ SceneDef indented_puck(const SceneVariant& v) {
   return s;
 }
 
+SceneDef bellows(const SceneVariant& v) {
+  SceneDef s =
+      on_mesh("bellows", "Bellows that folds onto itself",
+              "Air is drawn out of a bellows until its folds lie on each other.", "bellows", "bellows", v);
+  s.bodies[0].materials = {rubber(1e5, 0.5)};
+  s.dirichlet = {hold("base", "clamped")};
+  CavityDef air = chamber("chamber", 0);
+  air.control = CavityControl::volume_ratio;
+  air.amount = Curve{{{0, 1}, {1, 0.3}}};
+  s.cavities = {air};
+  SurfaceContactDef folds;
+  folds.name = "folds";
+  s.surface_contacts = {folds};
+  s.analysis.steps = 14;
+  s.probes = {{"top", {}, {0, 0.069, 0}}};
+  MetricDef suction;
+  suction.name = "pressure";
+  suction.quantity = Quantity::cavity_pressure;
+  suction.of = "chamber";
+  suction.unit = "Pa";
+  s.metrics = {displacement("stroke", "top", Component::y), suction,
+               of_contact("contact area", Quantity::contact_area, "folds", "m^2"),
+               of_contact("gap", Quantity::contact_gap, "folds", "m")};
+  keep_volume(s);
+  return s;
+}
+
+SceneDef colliding_balls(const SceneVariant& v) {
+  SceneDef s =
+      on_mesh("colliding_balls", "Two balls that collide",
+              "Two soft incompressible balls of 10 cm meet off center at 4 m/s, in free space, and part.",
+              "left", "ball_small", v);
+  s.bodies[0].materials = {rubber(1e5, 0.5)};
+  s.bodies[0].velocity = {2, 0, 0};
+  s.bodies.push_back(s.bodies[0]);
+  s.bodies[1].name = "right";
+  s.bodies[1].velocity = {-2, 0, 0};
+  auto& mesh = std::get<MeshFile>(s.bodies[1].mesh);
+  mesh.offset = {0.11, 0.03, 0};
+  SurfaceContactDef meet;
+  meet.name = "meet";
+  meet.against = BodyId{1};
+  meet.friction = 0.3;
+  s.surface_contacts = {meet};
+  s.analysis.type = AnalysisType::dynamics;
+  s.analysis.scheme = SchemeWord::bdf2;
+  s.analysis.duration = 0.1;
+  s.analysis.step = 0.001;
+  s.outputs.every = 2;
+  s.probes = {{"middle of the left", BodyId{0}, {0, 0, 0}},
+              {"middle of the right", BodyId{1}, {0.11, 0.03, 0}}};
+  s.metrics = {at_time(of_contact("push when closest", Quantity::contact_force, "meet", "N"), 0.03),
+               displacement("left at the end", "middle of the left", Component::x),
+               displacement("right at the end", "middle of the right", Component::x)};
+  keep_volume(s);
+  return s;
+}
+
 }  // namespace isochor
