@@ -239,12 +239,12 @@ SceneDef bellows(const SceneVariant& v) {
   s.dirichlet = {hold("base", "clamped")};
   CavityDef air = chamber("chamber", 0);
   air.control = CavityControl::volume_ratio;
-  air.amount = Curve{{{0, 1}, {1, 0.3}}};
+  air.amount = Curve{{{0, 1}, {1, 0.25}}};
   s.cavities = {air};
   SurfaceContactDef folds;
   folds.name = "folds";
   s.surface_contacts = {folds};
-  s.analysis.steps = 14;
+  s.analysis.steps = 15;
   s.probes = {{"top", {}, {0, 0.069, 0}}};
   MetricDef suction;
   suction.name = "pressure";
