@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "constraints/crossing.h"
 #include "constraints/triangle.h"
 
 namespace isochor {
@@ -268,46 +269,17 @@ void add_patch_curvature(const PatchPoint& point, double factor, bool bending,
 }
 
 double crossing_time(const std::array<Vec3, 4>& start, const std::array<Vec3, 4>& end) {
-  constexpr double never = 2, slack = 1e-9;
-  // Six times the volume under the point, a cubic in time.
-  const auto corner = [&](std::size_t k, double t) { return start[k] + t * (end[k] - start[k]); };
-  const auto height = [&](double t) {
-    const Vec3 a = corner(1, t);
-    return dot(corner(0, t) - a, cross(corner(2, t) - a, corner(3, t) - a));
-  };
-  const Vec3 p = start[0] - start[1], u = start[2] - start[1], v = start[3] - start[1];
-  const Vec3 dp = end[0] - end[1] - p, du = end[2] - end[1] - u, dv = end[3] - end[1] - v;
-  const double c1 = dot(dp, cross(u, v)) + dot(p, cross(du, v)) + dot(p, cross(u, dv));
-  const double c2 = dot(dp, cross(du, v)) + dot(dp, cross(u, dv)) + dot(p, cross(du, dv));
-  const double c3 = dot(dp, cross(du, dv));
-  // Between its turning points the cubic is monotonic.
-  std::array<double, 4> knot{0, 1, 1, 1};
-  std::size_t knots = 1;
-  const double discriminant = c2 * c2 - 3 * c1 * c3;
-  if (discriminant > 0) {
-    const double q = -(c2 + std::copysign(std::sqrt(discriminant), c2));
-    std::array<double, 2> turn{c3 != 0 ? q / (3 * c3) : never, q != 0 ? c1 / q : never};
-    std::sort(turn.begin(), turn.end());
-    for (const double t : turn) {
-      if (t > 0 && t < 1) knot[knots++] = t;
-    }
-  }
-  knot[knots++] = 1;
-  for (std::size_t k = 0; k + 1 < knots; ++k) {
-    double low = knot[k], high = knot[k + 1];
-    if (!(height(low) > 0 && height(high) <= 0)) continue;
-    for (int i = 0; i < 60 && high - low > 1e-14; ++i) {
-      const double middle = 0.5 * (low + high);
-      (height(middle) > 0 ? low : high) = middle;
-    }
-    const Vec3 a = corner(1, high), b = corner(2, high), c = corner(3, high), y = corner(0, high);
+  constexpr double slack = 1e-9;
+  return first_crossing(start, end, [&](double t) {
+    std::array<Vec3, 4> now;
+    for (std::size_t k = 0; k < 4; ++k) now[k] = start[k] + t * (end[k] - start[k]);
+    const auto& [y, a, b, c] = now;
     const Vec3 area = cross(b - a, c - a);
     const double whole = dot(area, area);
-    if (!(whole > 0)) continue;
+    if (!(whole > 0)) return false;
     const double wb = dot(area, cross(y - a, c - a)) / whole, wc = dot(area, cross(b - a, y - a)) / whole;
-    if (wb >= -slack && wc >= -slack && wb + wc <= 1 + slack) return high;
-  }
-  return never;
+    return wb >= -slack && wc >= -slack && wb + wc <= 1 + slack;
+  });
 }
 
 }  // namespace isochor

@@ -43,6 +43,15 @@ class Skin {
   // Triangles that a point belongs to.
   std::span<const Index> triangles_at(Index point) const { return at_point_[point]; }
   const std::array<Index, 3>& corners(Index triangle) const { return corner_[at(triangle)]; }
+  int side(Index triangle) const { return side_[at(triangle)]; }
+  // The triangle across edge k, from corner k to the next, smooth or sharp but outward; -1 where there is
+  // none.
+  Index across(Index triangle, std::size_t k) const {
+    return std::max(across_[at(triangle)][k], side_across_[at(triangle)][k]);
+  }
+  bool same_face(Index triangle, Index other) const {
+    return part_[at(triangle)].face == part_[at(other)].face;
+  }
   // Mean edge of a triangle at rest [m], over all of them.
   double size() const { return size_; }
 

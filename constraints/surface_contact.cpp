@@ -5,6 +5,7 @@
 #include <set>
 
 #include "constraints/contact_rows.h"
+#include "constraints/edge_contact.h"
 #include "constraints/embedding.h"
 #include "constraints/surface_contact_pool.h"
 #include "constraints/surface_nodes.h"
@@ -27,8 +28,8 @@ constexpr double kLayer = 0.02;
 class SurfaceContactInstance final : public EffectInstance {
  public:
   SurfaceContactInstance(std::shared_ptr<const ContactRows> rows, Index row_pool,
-                         std::shared_ptr<const Skin> skin)
-      : rows_(std::move(rows)), row_pool_(row_pool), skin_(std::move(skin)) {
+                         std::shared_ptr<const Skin> skin, EdgeContact edges)
+      : rows_(std::move(rows)), row_pool_(row_pool), skin_(std::move(skin)), edges_(std::move(edges)) {
     for (const SkinPoint& p : skin_->points()) {
       for (std::size_t k = 0; k < p.nodes; ++k) {
         auto& area = area_[{p.node[k], p.sheet}];
@@ -75,6 +76,11 @@ class SurfaceContactInstance final : public EffectInstance {
       for (std::size_t i = 0; i < nodes.size(); ++i)
         pressed[at(nodes[i])] += (i < points[at(s)].nodes ? l : -l) * pool.share(s, i, near);
     }
+    const EdgeContact::Totals edges = edges_.totals(c);
+    if (!pool.setup().skin->single()) force += edges.force;
+    normal += edges.normal;
+    tangential += edges.tangential;
+    gap = std::min(gap, edges.gap);
     double pressure = 0;
     for (std::size_t i = 0; i < pressed.size(); ++i) {
       // Corners of faces with six nodes have no area of their own.
@@ -99,6 +105,7 @@ class SurfaceContactInstance final : public EffectInstance {
   std::shared_ptr<const ContactRows> rows_;
   Index row_pool_;
   std::shared_ptr<const Skin> skin_;
+  EdgeContact edges_;
   std::map<std::pair<Index, Index>, std::array<double, 2>>
       area_;  // by node and sheet at rest: the sum of shares, and that of their sizes [m^2]
 };
@@ -157,8 +164,10 @@ class SurfaceContactEffect final : public EffectSource {
     rows->largest_overshoot = 0.25 * setup->skin->size();
     rows->stencil_pool = builder.add_stencils(pool);
     const Index row_pool = builder.add_rows(rows);
+    auto edges = EdgeContact::build(builder, def_, *setup->skin, layer, softer);
+    if (!edges) return Error{edges.error()};
     return std::unique_ptr<EffectInstance>(
-        std::make_unique<SurfaceContactInstance>(rows, row_pool, setup->skin));
+        std::make_unique<SurfaceContactInstance>(rows, row_pool, setup->skin, std::move(edges).value()));
   }
 
  private:

@@ -196,6 +196,33 @@ void add_surface_contacts(std::vector<SceneCase>& out, Element element) {
   }
 }
 
+// Two bars on edge that cross at a quarter of an edge.
+void add_crossed_edges(std::vector<SceneCase>& out, Element element) {
+  const auto bar = [&](bool upper) {
+    const CellType type = element == Element::tet10 ? CellType::tet10 : CellType::tet4;
+    return mapped(box({2, 1, 1}, {1, 1, 1}, type), [&](const Vec3& p) {
+      const double w = 0.3;
+      const Vec3 ridge{p.x - 0.5, w * (p.y - p.z), w * (p.y + p.z - 2)};
+      return upper ? Vec3{ridge.y + 0.13, ridge.x + 0.13, -ridge.z + 0.015} : ridge;
+    });
+  };
+  for (const double friction : {0.0, 0.4}) {
+    SurfaceContactDef def;
+    def.against = static_cast<BodyId>(1);
+    def.friction = friction;
+    def.thickness = 0.02;
+    def.initial_overlap = InitialOverlap::resolve;
+    SceneCase c = on_block(friction > 0 ? "crossed edges with friction" : "crossed edges", element,
+                           {"constraints/edge_contact", "constraints/edge_contact_pool",
+                            "constraints/edge_distance", "constraints/skin_edges"},
+                           surface_contact(def));
+    c.mesh = bar(false);
+    c.more_bodies = {bar(true)};
+    c.stress_free = false;  // distances between bodies that are apart
+    out.push_back(c);
+  }
+}
+
 void add_rigid_bodies(std::vector<SceneCase>& out, Element element) {
   for (const auto shape : {ObstacleShape::sphere, ObstacleShape::capsule, ObstacleShape::cylinder,
                            ObstacleShape::box, ObstacleShape::mesh, ObstacleShape::distance_field}) {
@@ -240,6 +267,7 @@ void add_attachments(std::vector<SceneCase>& out) {
     add_chambers(out, element);
     add_contacts(out, element);
     add_surface_contacts(out, element);
+    add_crossed_edges(out, element);
     if (element == Element::tet4) add_rigid_bodies(out, element);
   }
 }

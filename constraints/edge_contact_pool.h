@@ -1,0 +1,63 @@
+// Stencils of edges on moving surfaces against edges that they cross.
+#pragma once
+
+#include "constraints/friction_spring.h"
+#include "constraints/skin_edges.h"
+#include "engine/pool.h"
+
+namespace isochor {
+
+// One stencil an edge that bulges outward and one function, the value of EdgeGap to the edge of the other
+// side that it meets: its partner. The nodes are those of EdgeGap; edges without a partner have none, and a
+// gap that is never closed. Both edges of a pair have a stencil, so that neither is master or slave. Friction
+// as in SurfaceContactPool, the pull of the last step turning with the edge.
+class EdgeContactPool final : public StencilPool {
+ public:
+  // What pools that replace each other share.
+  struct Setup {
+    std::string name;
+    std::shared_ptr<const SkinEdges> edges;
+    double offset = 0;          // [m]
+    double friction = 0;        // [-]
+    std::vector<double> stick;  // by edge: stiffness of friction that sticks [N/m]
+    double open = 1;            // gap of edges without a partner [m]
+  };
+  EdgeContactPool(std::shared_ptr<const Setup> setup, std::vector<Index> partner);
+
+  std::string_view name() const override { return setup_->name; }
+  bool has_energy() const override { return setup_->friction > 0; }
+  int functions() const override { return 1; }
+  void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
+
+  bool has_lag() const override { return setup_->friction > 0; }
+  // By edge: one more than the partner, then the pull in the axes of the edge.
+  int memory() const override { return memory_per_edge() * stencils(); }
+  void accept(const StencilRequest& request, std::span<double> memory) const override;
+  bool follows() const override { return true; }
+  FollowAnswer followed(const FollowRequest& request) const override;
+
+  const Setup& setup() const { return *setup_; }
+  bool has_partner(Index s) const { return partner_[at(s)] >= 0; }
+  // Of edges that have a partner.
+  EdgeGap gap(Index s, std::span<const Vec3> x) const { return edge_gap(places(s, x), setup_->offset); }
+  // What the first edge feels of a multiplier [N].
+  Vec3 push(Index s, double multiplier, std::span<const Vec3> x) const;
+  // The pull of friction that a step left, at positions x [N].
+  Vec3 kept_pull(Index s, std::span<const double> memory, std::span<const Vec3> x) const;
+
+ private:
+  struct Friction {
+    FrictionSpring spring;
+    EdgeGap gap;
+  };
+  int memory_per_edge() const { return setup_->friction > 0 ? 4 : 1; }
+  std::array<Vec3, kPairNodes> places(Index s, std::span<const Vec3> x) const;
+  Friction friction(const StencilRequest& request, Index s) const;
+  Mat3 axes(Index s, std::span<const Vec3> x) const;
+  double reach() const { return setup_->offset + 0.75 * setup_->edges->size(); }
+
+  std::shared_ptr<const Setup> setup_;
+  std::vector<Index> partner_;
+};
+
+}  // namespace isochor
