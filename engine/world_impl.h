@@ -78,6 +78,8 @@ struct World::Impl {
   SaddleReport rescue(double h);
   Result<void> make_method(SystemParts parts);
   StepReport invalid(std::string reason) const;
+  StepReport cancelled();
+  void take_cancel(StepReport& report);
   void finish_report(StepReport& report, const StageSeconds& before, double total) const;
   // phi - target - C lambda of all compliant rows at the state.
   std::vector<double> row_residuals();

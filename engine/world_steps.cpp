@@ -48,6 +48,20 @@ StepReport World::Impl::invalid(std::string reason) const {
   return report;
 }
 
+// A request is taken by the step that it stops: one that comes between steps is not lost.
+void World::Impl::take_cancel(StepReport& report) {
+  cancel_requested = false;
+  report.status = StepStatus::cancelled;
+  report.reason = "cancelled by the host";
+}
+
+StepReport World::Impl::cancelled() {
+  StepReport report;
+  take_cancel(report);
+  report.time = state.t;
+  return report;
+}
+
 void World::Impl::finish_report(StepReport& report, const StageSeconds& before, double total) const {
   const StageSeconds& now = newton->seconds();
   report.seconds = {now.analyze - before.analyze,
@@ -81,9 +95,9 @@ StepReport World::step(double h, const StepBudget& budget) {
     return w.invalid("step: a budget of " + std::to_string(budget.iterations) + " iterations and " +
                      std::to_string(budget.seconds) + " s; both must be zero (no limit) or positive");
   }
+  if (w.cancel_requested) return w.cancelled();
   const auto start = std::chrono::steady_clock::now();
   const StageSeconds before = w.newton->seconds();
-  w.cancel_requested = false;
   w.amounts_before.clear();
   w.save_amounts(w.amounts_before);
   w.begin_amounts(w.state.t, w.state.t + h);
@@ -111,8 +125,7 @@ StepReport World::step(double h, const StepBudget& budget) {
     report.status = StepStatus::unfinished;
     report.reason = "the budget ran out after " + std::to_string(r.iterations) + " iterations";
   } else if (w.cancel_requested) {
-    report.status = StepStatus::cancelled;
-    report.reason = "cancelled by the host";
+    w.take_cancel(report);
   } else {
     report.status = StepStatus::rejected;
     report.rejected_substeps = 1;
@@ -225,9 +238,9 @@ StepReport World::advance(double h) {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return w.invalid(r.error());
   if (!(h > 0) || !std::isfinite(h)) return w.invalid(bad_length("advance", h));
+  if (w.cancel_requested) return w.cancelled();
   const auto start = std::chrono::steady_clock::now();
   const StageSeconds before = w.newton->seconds();
-  w.cancel_requested = false;
   const double t0 = w.state.t, t_end = t0 + h;
   w.begin_amounts(t0, t_end);
   StepReport report;
@@ -282,8 +295,7 @@ StepReport World::advance(double h) {
     }
     successes = 0;
     if (r.status == SaddleStatus::cancelled) {
-      report.status = StepStatus::cancelled;
-      report.reason = "cancelled by the host";
+      w.take_cancel(report);
       break;
     }
     ++report.rejected_substeps;
@@ -300,8 +312,7 @@ StepReport World::advance(double h) {
         continue;
       }
       if (rescued.status == SaddleStatus::cancelled) {
-        report.status = StepStatus::cancelled;
-        report.reason = "cancelled by the host";
+        w.take_cancel(report);
         break;
       }
     }
@@ -337,9 +348,9 @@ StepReport World::follow(double length) {
   if (!(length > 0) || !std::isfinite(length)) return w.invalid(bad_length("follow", length));
   constexpr int most_halvings = 10, patience = 12;
   constexpr double load_weight = 0.1;  // of the scene's length
+  if (w.cancel_requested) return w.cancelled();
   const auto start = std::chrono::steady_clock::now();
   const StageSeconds before = w.newton->seconds();
-  w.cancel_requested = false;
   StepReport report;
   const auto problem_at = [&w](double t) { return w.problem_at(t); };
   SaddleReport r;
@@ -367,8 +378,7 @@ StepReport World::follow(double length) {
       break;
   }
   if (r.status == SaddleStatus::cancelled) {
-    report.status = StepStatus::cancelled;
-    report.reason = "cancelled by the host";
+    w.take_cancel(report);
   } else if (r.status != SaddleStatus::converged) {
     report.status = StepStatus::rejected;
     report.reason = "no equilibrium found along the path from t = " + std::to_string(w.state.t) + ": " +

@@ -221,7 +221,7 @@ class World {
   // the nodes [m], and load: sqrt(rms^2 + (load_weight dt)^2). The step is halved up to ten times where it
   // fails; the report tells whether the equilibrium is stable.
   StepReport follow(double length);
-  // Stops a step that is running, from any thread: it returns `cancelled` and leaves the state untouched.
+  // Stops the step that runs, or else the next one, from any thread: it returns `cancelled`, the state as is.
   void cancel();
 
   // Sets the amount of an effect (a pressure [Pa], a volume [m^3], a scale), from now on instead of its

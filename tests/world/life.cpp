@@ -135,6 +135,29 @@ TEST_CASE("cancel stops a step from another thread and leaves the state alone") 
   CHECK(a.world.time() == Approx(0.2));
 }
 
+TEST_CASE("a cancel between steps stops the next one, and that alone") {
+  Block a(static_options());
+  a.world.cancel();
+  CHECK(a.world.step(0.1).status == StepStatus::cancelled);
+  CHECK(a.world.time() == 0);
+  CHECK(a.world.advance(0.1).status == StepStatus::converged);
+  const std::uint64_t hash = a.world.state_hash();
+  a.world.cancel();
+  a.world.cancel();
+  const StepReport r = a.world.advance(0.1);
+  CHECK(r.status == StepStatus::cancelled);
+  CHECK(r.reason == "cancelled by the host");
+  CHECK(r.iterations == 0);
+  CHECK(r.time == Approx(0.1));
+  CHECK(a.world.state_hash() == hash);
+  // A step that cannot be made does not take the request.
+  a.world.cancel();
+  CHECK(a.world.step(-1).status == StepStatus::invalid);
+  CHECK(a.world.step(0.1).status == StepStatus::cancelled);
+  CHECK(a.world.step(0.1).status == StepStatus::converged);
+  CHECK(a.world.time() == Approx(0.2));
+}
+
 TEST_CASE("several worlds in several threads at once give the bits that each gives alone") {
   const auto run = [](Element element) {
     Block block(dynamic_options(), element, Curve::constant(3000));
