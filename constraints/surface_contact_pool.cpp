@@ -8,6 +8,7 @@ namespace isochor {
 namespace {
 
 constexpr std::size_t kMost = kFaceNodes + kPatchNodes;  // nodes of a stencil
+constexpr double kSame = 1e-3;  // difference of distances over the size of a face that does not matter
 
 double norm(const Vec3& v) {
   return std::sqrt(dot(v, v));
@@ -148,9 +149,24 @@ void SurfaceContactPool::accept(const StencilRequest& q, std::span<double> memor
   }
 }
 
+PatchPoint SurfaceContactPool::seen_from(Index s, Index center, std::span<const Vec3> x) const {
+  const Skin::Around around = setup_->skin->around(center, s);
+  std::array<Vec3, kPatchNodes> corner{};
+  for (std::size_t k = 0; k < around.patch.nodes; ++k) corner[k] = x[at(around.node[k])];
+  return nearest_on_patch(setup_->skin->points()[at(s)].position(x),
+                          std::span(corner).first(around.patch.nodes), around.patch);
+}
+
+// Whether the nearest place is beyond the patch by more than a quarter of a face. Up to there what slides on
+// a flat surface needs no new stencils, which cost an analysis.
+bool SurfaceContactPool::reaches_out(const PatchPoint& near, Index s, Index center) const {
+  return setup_->skin->around(center, s).patch.face > 3 ||
+         std::any_of(near.weight.begin(), near.weight.end(), [](double w) { return w < -0.25; });
+}
+
 FollowAnswer SurfaceContactPool::followed(const FollowRequest& q) const {
   const Skin& skin = *setup_->skin;
-  const double small = 1e-3 * skin.size(), deep = 0.5 * skin.size();
+  const double deep = 0.5 * skin.size();
   std::vector<Skin::Finding> found(center_.size());
   std::vector<Index> base = center_;
   if (!q.memory.empty()) {
@@ -164,7 +180,6 @@ FollowAnswer SurfaceContactPool::followed(const FollowRequest& q) const {
   for (Index s = 0; s < stencils(); ++s) {
     const Skin::Finding& f = found[at(s)];
     const Index c = base[at(s)];
-    const double gap = f.nearest >= 0 ? f.distance - setup_->offset : setup_->open;
     target[at(s)] = f.nearest;
     const bool seen = f.nearest >= 0 && skin.in_patch(c, f.nearest, s);
     if (f.crossed >= 0 && !(f.nearest >= 0 && std::abs(f.distance) < deep)) {
@@ -188,15 +203,19 @@ FollowAnswer SurfaceContactPool::followed(const FollowRequest& q) const {
       needed = needed || (inside && target[at(s)] != c);
     }
     if (f.nearest < 0 || seen) continue;
-    if (!q.solved) {
-      needed = needed || gap < 0.4 * reach();
-    } else if (c < 0) {
-      needed = needed || gap < 0;
-    } else {
-      const double present = nearest(s, q.x).distance;
-      needed = needed ||
-               (std::min(f.distance, present) < setup_->offset && std::abs(f.distance - present) > small);
+    // As far away as a patch around it would say: beside a sharp edge that is outside.
+    const PatchPoint there = seen_from(s, f.nearest, q.x);
+    const double gap = there.distance - setup_->offset;
+    if (c < 0) {
+      needed = needed || gap < (q.solved ? 0 : 0.4 * reach());
+      continue;
     }
+    const PatchPoint here = seen_from(s, c, q.x);
+    const bool differs = std::abs(there.distance - here.distance) > kSame * skin.size();
+    if (q.solved)
+      needed = needed || (std::min(there.distance, here.distance) < setup_->offset && differs);
+    else
+      needed = needed || (gap < 0.4 * reach() && (differs || reaches_out(here, s, c)));
   }
   if (!needed) target = base;
   if (target != center_) answer.pool = std::make_shared<SurfaceContactPool>(setup_, std::move(target));

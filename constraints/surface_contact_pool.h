@@ -55,6 +55,9 @@ class SurfaceContactPool final : public StencilPool {
   int memory_per_point() const { return setup_->friction > 0 ? 4 : 1; }
   Friction friction(const StencilRequest& request, Index s) const;
   Mat3 axes(Index s, std::span<const Vec3> x) const;
+  // The nearest place of a patch around a triangle.
+  PatchPoint seen_from(Index s, Index center, std::span<const Vec3> x) const;
+  bool reaches_out(const PatchPoint& near, Index s, Index center) const;
   double reach() const { return setup_->offset + 0.75 * setup_->skin->size(); }
 
   std::shared_ptr<const Setup> setup_;
