@@ -3,9 +3,9 @@
 //   isochor_bench_contact [--quick] [--surfaces] [--pairs N] [--threads N]
 //
 // A slab of 11,532 Tet4 (1,944 with --quick) with nodal rows lies on a floor under its weight, in time steps
-// of 10 ms: with all nodes of its underside in contact, hard or soft, without friction and with it, and, in
-// turns with each, the same slab without floor and weight, whose positions are as many unknowns. The ratio is
-// the median over the pairs.
+// of 10 ms: with all nodes of its underside in contact, hard or soft, without friction and with it, lagged
+// and coupled, and, in turns with each, the same slab without floor and weight, whose positions are as many
+// unknowns. The ratio is the median over the pairs.
 #include <isochor/contact.h>
 #include <isochor/effects.h>
 #include <isochor/generate.h>
@@ -43,11 +43,12 @@ struct Kind {
   const char* what;
   On on;
   double compliance = 0, friction = 0;
+  FrictionCoupling coupling = FrictionCoupling::lagged;
 };
 
 struct Outcome {
   double step = 0, iteration = 0;  // processor time [ms]
-  int iterations = 0;
+  int iterations = 0, corrections = 0;
   std::size_t active = 0;
   StageTimes seconds;
 };
@@ -132,6 +133,7 @@ Outcome run(const Kind& kind, bool quick, int threads) {
     floor.surfaces = {"z0"};
     floor.compliance = kind.compliance;
     floor.friction = kind.friction;
+    floor.coupling = kind.coupling;
     must(world.add(contact(floor)));
   }
   constexpr int steps = 8;
@@ -147,6 +149,7 @@ Outcome run(const Kind& kind, bool quick, int threads) {
     }
     if (k < 3) continue;
     out.iterations += r.iterations;
+    out.corrections += r.corrections;
     factorizations += r.factorizations;
     out.seconds.analyze += r.seconds.analyze;
     out.seconds.evaluate += r.seconds.evaluate + r.seconds.gather + r.seconds.line_search;
@@ -185,11 +188,11 @@ void compare(const Case& c, int pairs, bool quick, int threads) {
   std::printf(
       "%-20s %4zu points touch; a step %.0f ms, free %.0f ms: %+.1f %% (pairs %+.1f to %+.1f); a "
       "factorization's worth "
-      "%+.1f %%; iterations %d, free %d\n",
+      "%+.1f %%; iterations %d and %d corrections, free %d and %d\n",
       c.touching.what, b.active, median(touching), median(free_step), 100 * (median(step) - 1),
       100 * (*std::min_element(step.begin(), step.end()) - 1),
       100 * (*std::max_element(step.begin(), step.end()) - 1), 100 * (median(iteration) - 1), b.iterations,
-      a.iterations);
+      b.corrections, a.iterations, a.corrections);
   const auto stages = [](const char* what, const Outcome& o) {
     const auto& t = o.seconds;
     std::printf(
@@ -226,10 +229,13 @@ int main(int argc, char** argv) {
     }
   }
   constexpr Kind kFree{"free", On::nothing};
-  constexpr Case kFloors[] = {{{"hard", On::floor}, kFree},
-                              {{"soft, 1e-8 m/Pa", On::floor, 1e-8}, kFree},
-                              {{"hard, friction 0.3", On::floor, 0, 0.3}, kFree},
-                              {{"soft, friction 0.3", On::floor, 1e-8, 0.3}, kFree}};
+  constexpr Case kFloors[] = {
+      {{"hard", On::floor}, kFree},
+      {{"soft, 1e-8 m/Pa", On::floor, 1e-8}, kFree},
+      {{"hard, friction 0.3", On::floor, 0, 0.3}, kFree},
+      {{"soft, friction 0.3", On::floor, 1e-8, 0.3}, kFree},
+      {{"hard, 0.3, coupled", On::floor, 0, 0.3, FrictionCoupling::coupled}, kFree},
+      {{"soft, 0.3, coupled", On::floor, 1e-8, 0.3, FrictionCoupling::coupled}, kFree}};
   if (!surfaces_only) {
     for (const Case& c : kFloors) compare(c, pairs, quick, threads);
   }

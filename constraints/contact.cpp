@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "constraints/bouncing_rows.h"
 #include "constraints/contact_pool.h"
 #include "constraints/contact_rows.h"
 #include "constraints/embedding.h"
@@ -82,6 +83,19 @@ class ContactEffect final : public EffectSource {
       return Error{who() + key + " = " + number(value) + (*unit ? " " : "") + unit +
                    "; it must be zero or positive"};
     }
+    if (!(def_.restitution >= 0 && def_.restitution <= 1)) {
+      return Error{who() + "restitution = " + number(def_.restitution) +
+                   "; it must be between 0 and 1, what more would add energy in every impact"};
+    }
+    if (!(def_.restitution_speed >= 0 && std::isfinite(def_.restitution_speed))) {
+      return Error{who() + "restitution_speed = " + number(def_.restitution_speed) +
+                   " m/s; it must be zero or positive"};
+    }
+    if (def_.restitution > 0 && def_.compliance > 0) {
+      return Error{who() + "restitution = " + number(def_.restitution) +
+                   " with compliance = " + number(def_.compliance) +
+                   " m/Pa; a soft layer bounces by its own elasticity: leave one of them 0"};
+    }
     if (!(def_.resolve_time > 0)) {
       return Error{who() + "resolve_time = " + number(def_.resolve_time) + " s; it must be positive"};
     }
@@ -98,8 +112,12 @@ class ContactEffect final : public EffectSource {
       points = rigid.value().points;
       shape = rigid.value().shape;
     }
-    auto pool = std::make_shared<ContactPool>(def_.name, shape, def_.friction, points);
-    auto rows = std::make_shared<ContactRows>(def_.name, def_.resolve_time);
+    auto pool = std::make_shared<ContactPool>(def_.name, shape, def_.friction, points,
+                                              def_.coupling == FrictionCoupling::coupled);
+    auto rows = def_.restitution > 0
+                    ? std::make_shared<BouncingRows>(def_.name, def_.resolve_time, pool, def_.restitution,
+                                                     def_.restitution_speed)
+                    : std::make_shared<ContactRows>(def_.name, def_.resolve_time);
     if (auto r = def_.rigid.empty() ? add_nodes(builder, *pool, *rows, called)
                                     : add_touch_points(builder, *pool, *rows, called);
         !r) {

@@ -86,6 +86,17 @@ double ContactPool::gap(Index s, const ContactFrame& frame, std::span<const Vec3
   return distance_value(shape_, frame.to_own(point(s, x))) - offset_[at(s)];
 }
 
+double ContactPool::gap_rate(Index s, const ContactFrame& frame, const ContactFrame& later, double h,
+                             std::span<const Vec3> x, std::span<const Vec3> v) const {
+  const Vec3 own = frame.to_own(point(s, x));
+  const auto c = weights(s, own);
+  const auto nodes = nodes_[s];
+  Vec3 rate{};
+  for (std::size_t i = 0; i < nodes.size(); ++i) rate += c[i] * v[at(nodes[i])];
+  if (!points_) rate -= (1 / h) * (later.to_world(own) - frame.to_world(own));
+  return dot(transposed_times(frame.inverse, distance_to(shape_, own).normal), rate);
+}
+
 // Weights of the nodes in the motion of the point relative to the shape, the point being at `own` in the
 // shape's axes.
 std::array<double, ContactPool::kMost> ContactPool::weights(Index s, const Vec3& own) const {
@@ -113,7 +124,8 @@ ContactPool::Friction ContactPool::friction(const StencilRequest& q, const Frame
   f.spring.stiffness = stick_[at(s)];
   const bool remembers = !q.memory.empty();
   const double* m = remembers ? q.memory.data() + 3 * at(s) : nullptr;
-  const Vec3 kept = remembers ? frames.lag.A * Vec3{m[0], m[1], m[2]} : Vec3{};
+  if (remembers) f.kept = {m[0], m[1], m[2]};
+  const Vec3 kept = frames.lag.A * f.kept;
   if (q.lag.x.empty()) {
     f.spring.limit = norm(kept);
     f.spring.z = (1 / stick_[at(s)]) * kept;
@@ -121,21 +133,21 @@ ContactPool::Friction ContactPool::friction(const StencilRequest& q, const Frame
   }
   const auto nodes = nodes_[s];
   f.spring.limit = friction_ * std::max(0.0, -q.lag.function_multiplier[at(s)]);
-  const Vec3 own = frames.lag.to_own(point(s, q.lag.x));
-  const Vec3 slope = distance_to(shape_, own).normal;
+  f.own = frames.lag.to_own(point(s, q.lag.x));
+  const Vec3 slope = distance_to(shape_, f.own).normal;
   Vec3& normal = f.spring.normal;
-  normal = transposed_times(frames.lag.inverse, slope);
+  f.slope = transposed_times(frames.lag.inverse, slope);
   // Fields may be flat where they are far from the surface.
-  const double steepness = norm(normal);
-  normal = steepness > 0 ? (1 / steepness) * normal : Vec3{0, 0, 1};
+  const double steepness = norm(f.slope);
+  normal = steepness > 0 ? (1 / steepness) * f.slope : Vec3{0, 0, 1};
   // Where they touch: the surface of the shape below the point, and for a point that keeps away the place on
   // its own body.
-  const Vec3 touch = own - offset_[at(s)] * slope;
+  const Vec3& touch = f.touch = f.own - offset_[at(s)] * slope;
   f.weight = weights(s, touch);
   if (const auto& rider = rider_[at(s)]) {
     const ContactFrame body = frame_of(*rider, q.lag.x);
-    const Vec3 place = body.to_own(frames.lag.to_world(touch));
-    for (std::size_t a = 0; a < 4; ++a) f.weight[a] = rider->weight(a, place);
+    f.place = body.to_own(frames.lag.to_world(touch));
+    for (std::size_t a = 0; a < 4; ++a) f.weight[a] = rider->weight(a, f.place);
   }
   Vec3 slip{};
   if (!q.increment.before.empty()) {
@@ -144,7 +156,8 @@ ContactPool::Friction ContactPool::friction(const StencilRequest& q, const Frame
     }
     if (!points_) slip -= frames.now.to_world(touch) - frames.before.to_world(touch);
   }
-  f.spring.z = tangential(slip + (1 / stick_[at(s)]) * kept, normal);
+  f.whole = slip + (1 / stick_[at(s)]) * kept;
+  f.spring.z = tangential(f.whole, normal);
   return f;
 }
 

@@ -22,8 +22,13 @@ namespace isochor {
 class ContactPool final : public StencilPool {
  public:
   // The pose of `shape` counts where there are no control points.
-  ContactPool(std::string name, Obstacle shape, double friction, std::optional<ControlPoints> points = {})
-      : name_(std::move(name)), shape_(std::move(shape)), friction_(friction), points_(points) {}
+  ContactPool(std::string name, Obstacle shape, double friction, std::optional<ControlPoints> points = {},
+              bool coupled = false)
+      : name_(std::move(name)),
+        shape_(std::move(shape)),
+        friction_(friction),
+        coupled_(coupled),
+        points_(points) {}
   // `stick`: stiffness of friction that sticks [N/m].
   void add(Index node, double stick);
   // A point of a free rigid body at `own` in its axes, which keeps `offset` away.
@@ -37,6 +42,9 @@ class ContactPool final : public StencilPool {
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
 
   bool has_lag() const override { return friction_ > 0; }
+  bool couples() const override { return coupled_ && has_lag(); }
+  // contact_coupling.cpp
+  void lag_derivatives(const StencilRequest& request, const LagSlots& slots) const override;
   int memory() const override { return friction_ > 0 ? 3 * stencils() : 0; }
   void accept(const StencilRequest& request, std::span<double> memory) const override;
   bool has_barrier() const override { return shape_.shape != ObstacleShape::plane; }
@@ -49,6 +57,9 @@ class ContactPool final : public StencilPool {
     return points_ ? frame_of(*points_, x) : frame_of(pose_of(shape_, t));
   }
   double gap(Index s, const ContactFrame& frame, std::span<const Vec3> x) const;
+  // Rate of the gap [m/s] at positions x and velocities v; `later` is the frame after h seconds.
+  double gap_rate(Index s, const ContactFrame& frame, const ContactFrame& later, double h,
+                  std::span<const Vec3> x, std::span<const Vec3> v) const;
   const Obstacle& shape() const { return shape_; }
 
  private:
@@ -59,16 +70,27 @@ class ContactPool final : public StencilPool {
   struct Friction {
     FrictionSpring spring;
     std::array<double, kMost> weight{};
+    // Of the lag: the point in the axes of the shape, where it touches there and, of a point on a rigid body,
+    // in those of its own; the pull kept, in the axes of the shape; the slope of the distance in space; slip
+    // and stretch before they are projected on the tangent plane.
+    Vec3 own{}, touch{}, place{}, kept{}, slope{}, whole{};
+  };
+  struct FrictionRate {
+    Vec3 pull{};
+    std::array<double, kMost> weight{};
   };
   Frames frames(const StencilRequest& request) const;
   std::array<double, kMost> weights(Index s, const Vec3& own) const;
   Friction friction(const StencilRequest& request, const Frames& frames, Index s) const;
+  FrictionRate friction_rate(const StencilRequest& request, const Frames& frames, Index s, const Friction& f,
+                             const Mat3& curvature, std::size_t node, const Vec3& rate) const;
   void add_curvature(const StencilRequest& request, const Distance& d, const ContactFrame& frame,
                      const Vec3& own, Index s, Mat3* blocks) const;
 
   std::string name_;
   Obstacle shape_;
   double friction_;
+  bool coupled_;
   std::optional<ControlPoints> points_;
   std::vector<double> stick_, offset_;
   // Of points on a free rigid body: which, and where; a node has none.

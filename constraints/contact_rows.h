@@ -8,7 +8,7 @@
 
 namespace isochor {
 
-class ContactRows final : public RowPool {
+class ContactRows : public RowPool {
  public:
   ContactRows(std::string name, double resolve_time) : name_(std::move(name)), resolve_time_(resolve_time) {}
   std::string_view name() const override { return name_; }

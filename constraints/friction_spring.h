@@ -21,6 +21,17 @@ struct FrictionSpring {
   }
   // Derivative in z [N].
   Vec3 pull() const { return sticks() ? stiffness * z : (limit / stretch()) * z; }
+  // Derivative of the pull in the limit [-].
+  Vec3 pull_by_limit() const { return sticks() ? Vec3{} : (1 / stretch()) * z; }
+  // Rate of the pull where `whole`, of which z is the part across the normal, and the normal change at the
+  // given rates.
+  Vec3 pull_rate(const Vec3& whole, const Vec3& whole_rate, const Vec3& normal_rate) const {
+    const Vec3 z_rate = whole_rate - (dot(whole, normal_rate) + dot(whole_rate, normal)) * normal -
+                        dot(whole, normal) * normal_rate;
+    if (sticks()) return stiffness * z_rate;
+    const double s = stretch();
+    return (limit / s) * (z_rate - (dot(z, z_rate) / (s * s)) * z);
+  }
   // Second derivative: sticking, k in the tangent plane; slipping, only across the direction of the slip.
   Mat3 curvature() const {
     const double s = stretch(), k = sticks() ? stiffness : limit / s;

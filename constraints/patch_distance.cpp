@@ -204,19 +204,22 @@ PatchPoint nearest_on_patch(const Vec3& p, std::span<const Vec3> x, const Patch&
   return best;
 }
 
-void add_patch_curvature(const PatchPoint& point, double factor, bool bending,
-                         std::span<const double> coefficient, std::size_t first, Mat3* blocks) {
-  const Vec3& n = point.normal;
-  const double d = point.height;
-  const std::size_t dimensions = point.dimensions, count = coefficient.size();
-  const auto bend = [&](std::size_t a, std::size_t b) { return point.bend[a + b]; };
-  // Inverses of the metric and of A.
-  double metric[2][2] = {{0, 0}, {0, 0}}, inverse[2][2] = {{0, 0}, {0, 0}};
-  const auto invert = [&](double out[2][2], double share) {
+namespace {
+
+// Inverse of A, and the dual tangents.
+struct PatchFrame {
+  std::array<std::array<double, 2>, 2> inverse{};
+  std::array<Vec3, 2> dual{};
+};
+PatchFrame frame_of(const PatchPoint& point) {
+  const std::size_t dimensions = point.dimensions;
+  PatchFrame frame;
+  std::array<std::array<double, 2>, 2> metric{};
+  const auto invert = [&](std::array<std::array<double, 2>, 2>& out, double share) {
     double m[2][2];
     for (std::size_t a = 0; a < dimensions; ++a) {
       for (std::size_t b = 0; b < dimensions; ++b)
-        m[a][b] = dot(point.tangent[a], point.tangent[b]) - share * bend(a, b);
+        m[a][b] = dot(point.tangent[a], point.tangent[b]) - share * point.bend[a + b];
     }
     if (dimensions == 1) {
       out[0][0] = 1 / m[0][0];
@@ -228,11 +231,46 @@ void add_patch_curvature(const PatchPoint& point, double factor, bool bending,
     out[0][1] = out[1][0] = -m[0][1] / determinant;
   };
   invert(metric, 0);
-  invert(inverse, d);
-  std::array<Vec3, 2> dual{};
+  invert(frame.inverse, point.height);
   for (std::size_t a = 0; a < dimensions; ++a) {
-    for (std::size_t b = 0; b < dimensions; ++b) dual[a] += metric[a][b] * point.tangent[b];
+    for (std::size_t b = 0; b < dimensions; ++b) frame.dual[a] += metric[a][b] * point.tangent[b];
   }
+  return frame;
+}
+
+}  // namespace
+
+PatchRate patch_rate(const PatchPoint& point, double coefficient, std::size_t node) {
+  const auto [inverse, dual] = frame_of(point);
+  const Vec3& n = point.normal;
+  const double d = point.height;
+  const std::size_t dimensions = point.dimensions;
+  const auto slope = [&](std::size_t a) { return node < kPatchNodes ? point.slope[a][node] : 0.0; };
+  PatchRate rate;
+  for (std::size_t a = 0; a < dimensions; ++a) {
+    for (std::size_t b = 0; b < dimensions; ++b)
+      rate.foot[a] += inverse[a][b] * (coefficient * point.tangent[b] + d * slope(b) * n);
+  }
+  for (std::size_t a = 0; a < dimensions; ++a) {
+    Vec3 turn = slope(a) * n;
+    for (std::size_t b = 0; b < dimensions; ++b) turn += point.bend[a + b] * rate.foot[b];
+    add_outer(rate.normal, -1, dual[a], turn);
+  }
+  if (dimensions < 2 && std::abs(d) > 1e-9 * norm(point.tangent[0])) {
+    for (int i = 0; i < 3; ++i) rate.normal(i, i) += coefficient / d;
+    add_outer(rate.normal, -coefficient / d, n, n);
+    add_outer(rate.normal, -coefficient / d, point.tangent[0], dual[0]);
+  }
+  return rate;
+}
+
+void add_patch_curvature(const PatchPoint& point, double factor, bool bending,
+                         std::span<const double> coefficient, std::size_t first, Mat3* blocks) {
+  const Vec3& n = point.normal;
+  const double d = point.height;
+  const std::size_t dimensions = point.dimensions, count = coefficient.size();
+  const auto bend = [&](std::size_t a, std::size_t b) { return point.bend[a + b]; };
+  const auto [inverse, dual] = frame_of(point);
   Mat3 about;
   const bool bends =
       dimensions < 2 && std::abs(d) > 1e-9 * norm(point.tangent[0]) && !(bending && factor / d < 0);

@@ -54,6 +54,14 @@ PatchPoint nearest_on_patch(const Vec3& p, std::span<const Vec3> x, const Patch&
 void add_patch_curvature(const PatchPoint& point, double factor, bool bending,
                          std::span<const double> coefficient, std::size_t first, Mat3* blocks);
 
+// d xi_a / d y_l and d n / d y_l of these for one node: `coefficient` c_l, and its place in the patch
+// (kPatchNodes or more: it moves the point alone).
+struct PatchRate {
+  std::array<Vec3, 2> foot{};
+  Mat3 normal;
+};
+PatchRate patch_rate(const PatchPoint& point, double coefficient, std::size_t node);
+
 // The first of the fractions (0, 1] of straight ways at which a point goes from the front of a triangle to
 // its back through it; 2 where it never does. `start` and `end`: the point, then the corners.
 double crossing_time(const std::array<Vec3, 4>& start, const std::array<Vec3, 4>& end);

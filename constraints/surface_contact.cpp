@@ -142,6 +142,7 @@ class SurfaceContactEffect final : public EffectSource {
     setup->skin = std::make_shared<Skin>(sides.value(), builder.rest());
     setup->offset = def_.thickness;
     setup->friction = def_.friction;
+    setup->coupled = def_.coupling == FrictionCoupling::coupled;
     setup->open = builder.length();
     const std::array<double, 2> mu{stiffest(builder.body(def_.body)),
                                    stiffest(builder.body(def_.against.value_or(def_.body)))};

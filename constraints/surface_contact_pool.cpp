@@ -7,7 +7,7 @@ namespace isochor {
 
 namespace {
 
-constexpr std::size_t kMost = kFaceNodes + kPatchNodes;  // nodes of a stencil
+constexpr std::size_t kMost = kFaceNodes + kPatchNodes + 3;  // nodes of a stencil
 constexpr double kSame = 1e-3;  // difference of distances over the size of a face that does not matter
 
 double norm(const Vec3& v) {
@@ -29,6 +29,10 @@ SurfaceContactPool::SurfaceContactPool(std::shared_ptr<const Setup> setup, std::
       const Skin::Around around = skin.around(center_[at(s)], s);
       for (std::size_t k = 0; k < around.patch.nodes; ++k) nodes[count++] = around.node[k];
       patch_[at(s)] = around.patch;
+      for (const Index corner : skin.corners(skin.triangles_at(s)[0])) {
+        const auto end = nodes.begin() + static_cast<std::ptrdiff_t>(count);
+        if (couples() && std::find(nodes.begin(), end, corner) == end) nodes[count++] = corner;
+      }
     }
     nodes_.push(std::span(nodes).first(count));
   }
@@ -37,7 +41,7 @@ SurfaceContactPool::SurfaceContactPool(std::shared_ptr<const Setup> setup, std::
 
 PatchPoint SurfaceContactPool::nearest(Index s, std::span<const Vec3> x) const {
   const SkinPoint& point = setup_->skin->points()[at(s)];
-  const auto nodes = nodes_[s].subspan(point.nodes);
+  const auto nodes = nodes_[s].subspan(point.nodes, patch_[at(s)].nodes);
   std::array<Vec3, kPatchNodes> corner{};
   for (std::size_t k = 0; k < nodes.size(); ++k) corner[k] = x[at(nodes[k])];
   return nearest_on_patch(point.position(x), std::span(corner).first(nodes.size()), patch_[at(s)]);
@@ -45,6 +49,7 @@ PatchPoint SurfaceContactPool::nearest(Index s, std::span<const Vec3> x) const {
 
 double SurfaceContactPool::share(Index s, std::size_t i, const PatchPoint& near) const {
   const SkinPoint& point = setup_->skin->points()[at(s)];
+  if (i >= gap_nodes(s)) return 0;
   return i < point.nodes ? point.weight[i] : -near.weight[i - point.nodes];
 }
 
@@ -89,6 +94,7 @@ SurfaceContactPool::Friction SurfaceContactPool::friction(const StencilRequest& 
   Vec3 slip = (1 / f.spring.stiffness) * kept;
   for (std::size_t i = 0; i < nodes.size() && !q.increment.before.empty(); ++i)
     slip += share(s, i, f.near) * (q.x[at(nodes[i])] - q.increment.before[at(nodes[i])]);
+  f.whole = slip;
   f.spring.z = slip - dot(slip, f.near.normal) * f.near.normal;
   return f;
 }
@@ -126,7 +132,8 @@ void SurfaceContactPool::evaluate(const StencilRequest& q, const StencilSlots& s
     std::fill_n(blocks, n * (n + 1) / 2, Mat3{});
     if (multiplier != 0 && exists) {
       add_patch_curvature(near, multiplier, q.definiteness != Definiteness::exact,
-                          std::span(share_of).first(n), setup_->skin->points()[at(s)].nodes, blocks);
+                          std::span(share_of).first(gap_nodes(s)), setup_->skin->points()[at(s)].nodes,
+                          blocks);
     }
     if (!slips || !(f.spring.limit > 0)) continue;
     const Mat3 plane = f.spring.curvature();

@@ -11,7 +11,8 @@ namespace isochor {
 // an offset [m]; its multiplier is minus the normal force. The nodes are those of the point, then those of
 // the patch: a triangle and its neighbors across edges, among which the nearest place is found at every
 // evaluation. Points that nothing is close to have no nodes, and a gap that is never closed. Friction as in
-// ContactPool, the pull of the last step turning with the triangle of the point.
+// ContactPool, the pull of the last step turning with the triangle of the point, whose corners are nodes of
+// the stencil as well where friction is coupled.
 class SurfaceContactPool final : public StencilPool {
  public:
   // What pools that replace each other share.
@@ -22,6 +23,7 @@ class SurfaceContactPool final : public StencilPool {
     double friction = 0;        // [-]
     std::vector<double> stick;  // by point: stiffness of friction that sticks [N/m]
     double open = 1;            // gap of points that nothing is close to [m]
+    bool coupled = false;
   };
   // `center`: by point the triangle its patch is around, or -1.
   SurfaceContactPool(std::shared_ptr<const Setup> setup, std::vector<Index> center);
@@ -32,6 +34,9 @@ class SurfaceContactPool final : public StencilPool {
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
 
   bool has_lag() const override { return setup_->friction > 0; }
+  bool couples() const override { return setup_->coupled && has_lag(); }
+  // surface_coupling.cpp
+  void lag_derivatives(const StencilRequest& request, const LagSlots& slots) const override;
   // By point: one more than the center, then the pull in the axes of its triangle.
   int memory() const override { return memory_per_point() * stencils(); }
   void accept(const StencilRequest& request, std::span<double> memory) const override;
@@ -51,7 +56,12 @@ class SurfaceContactPool final : public StencilPool {
   struct Friction {
     FrictionSpring spring;
     PatchPoint near;
+    Vec3 whole{};  // slip and stretch before they are projected on the tangent plane
   };
+  // Nodes of a stencil that its gap depends on; those behind them only turn the pull that is kept.
+  std::size_t gap_nodes(Index s) const { return setup_->skin->points()[at(s)].nodes + patch_[at(s)].nodes; }
+  Vec3 kept_pull_rate(Index s, std::span<const double> memory, std::span<const Vec3> x, Index node,
+                      const Vec3& rate) const;
   int memory_per_point() const { return setup_->friction > 0 ? 4 : 1; }
   Friction friction(const StencilRequest& request, Index s) const;
   Mat3 axes(Index s, std::span<const Vec3> x) const;

@@ -34,7 +34,7 @@ StageSeconds& StageSeconds::operator+=(const StageSeconds& o) {
 }
 
 Kkt::Kkt(std::shared_ptr<const System> system, const Parallel& parallel, std::unique_ptr<LinearSolver> solver)
-    : system_(std::move(system)), parallel_(parallel), solver_(std::move(solver)) {
+    : system_(std::move(system)), parallel_(parallel), solver_(std::move(solver)), factored_(solver_.get()) {
   const System& s = *system_;
   const std::size_t size = at(s.kkt().size), border = s.bordered_rows().size();
   values_.resize(static_cast<std::size_t>(s.kkt().nonzeros()));
@@ -300,22 +300,20 @@ Kkt::Outcome Kkt::factor(const Assembly& assembly, const Values& values, StageSe
     });
     if (values.trace > 0) add_trace(values.trace);
   }
-  Outcome outcome;
-  if (!analyzed_) {
-    const Stopwatch watch(seconds.analyze);
-    const FactorReport f = solver_->analyze(kkt);
-    ++analyses_;
-    outcome.status = f.status;
-    outcome.message = f.message;
-    if (f.status != FactorStatus::ok) return outcome;
-    analyzed_ = true;
+  if (values.unsymmetric) {
+    {
+      const Stopwatch watch(seconds.gather);
+      const auto lower = std::span(both_triangles_).first(values_.size());
+      const auto upper = std::span(both_triangles_).subspan(values_.size());
+      std::copy(values_.begin(), values_.end(), lower.begin());
+      std::copy(values_.begin(), values_.end(), upper.begin());
+      for (const std::int64_t k : s.diagonal_place()) upper[static_cast<std::size_t>(k)] = 0;
+      values.unsymmetric->add_to(scale_, values.clamped, lower, upper);
+    }
+    return factor_values(*unsymmetric_solver_, unsymmetric_analyzed_, both_triangles_, seconds);
   }
-  const Stopwatch watch(seconds.factor);
-  solver_->set_scale(scale_);
-  const FactorReport f = solver_->factor(values_);
-  factor_nonzeros_ = f.factor_nonzeros;
-  outcome = {f.status, f.negative_pivots, f.message};
-  if (f.status != FactorStatus::ok) return outcome;
+  Outcome outcome = factor_values(*solver_, analyzed_, values_, seconds);
+  if (outcome.status != FactorStatus::ok) return outcome;
   // A condensed row has its negative pivot in -C, eliminated first; a dual one in its Schur complement, whose
   // sign is right whenever that of the (augmented) stiffness is.
   if (outcome.negative >= 0)
@@ -323,11 +321,37 @@ Kkt::Outcome Kkt::factor(const Assembly& assembly, const Values& values, StageSe
   return s.bordered_rows().empty() ? outcome : eliminate_border(values, outcome);
 }
 
+void Kkt::take_unsymmetric(std::unique_ptr<LinearSolver> solver) {
+  unsymmetric_solver_ = std::move(solver);
+  both_triangles_.resize(2 * values_.size());
+}
+
+// Scaled values of one or both triangles; analyzes before the first.
+Kkt::Outcome Kkt::factor_values(LinearSolver& solver, bool& analyzed, std::span<const double> values,
+                                StageSeconds& seconds) {
+  Outcome outcome;
+  if (!analyzed) {
+    const Stopwatch watch(seconds.analyze);
+    const FactorReport f = solver.analyze(system_->kkt());
+    ++analyses_;
+    outcome.status = f.status;
+    outcome.message = f.message;
+    if (f.status != FactorStatus::ok) return outcome;
+    analyzed = true;
+  }
+  const Stopwatch watch(seconds.factor);
+  solver.set_scale(scale_);
+  const FactorReport f = solver.factor(values);
+  factored_ = &solver;
+  factor_nonzeros_ = f.factor_nonzeros;
+  return {f.status, f.negative_pivots, f.message};
+}
+
 // The matrix A with its border, from rhs_ and border_rhs_ to solution_ and border_value_.
 bool Kkt::solve_matrix(StageSeconds& seconds) {
   const System& s = *system_;
   const Stopwatch watch(seconds.solve);
-  const SolveReport solved = solver_->solve(rhs_, solution_);
+  const SolveReport solved = factored_->solve(rhs_, solution_);
   residual_ = std::max(residual_, solved.residual);
   linear_iterations_ += solved.iterations;
   const std::size_t nb = s.bordered_rows().size(), size = at(s.kkt().size);

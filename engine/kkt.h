@@ -4,7 +4,7 @@
 // (conjugate gradients on their multipliers around the factorization).
 #pragma once
 
-#include "engine/assembly.h"
+#include "engine/unsymmetric_part.h"
 
 namespace isochor {
 
@@ -38,6 +38,9 @@ class Kkt {
     std::span<const double> tangent;        // one for each System::compliance() entry; read where laws are
     std::span<const std::uint8_t> clamped;  // rows held at a bound; empty: none
     double trace = 0;  // compliance added to the matrix alone, relative; the equations solved are others
+    // Makes the matrix unsymmetric, for the solver given to take_unsymmetric(); rows that have a share in it
+    // are kept, and none are bordered or dual.
+    const UnsymmetricPart* unsymmetric = nullptr;
   };
   struct Outcome {
     FactorStatus status = FactorStatus::ok;
@@ -46,6 +49,9 @@ class Kkt {
     std::string message;
   };
   Outcome factor(const Assembly& assembly, const Values& values, StageSeconds& seconds);
+
+  // Who factors unsymmetric matrices.
+  void take_unsymmetric(std::unique_ptr<LinearSolver> solver);
 
   // Solves for the steps: node_rhs over all nodes (what falls on given directions is ignored), row_rhs over
   // all compliant rows in the sign of [K, G^T; G, -C]. Returns false when the residual is not acceptable.
@@ -82,6 +88,8 @@ class Kkt {
   void add_trace(double trace);
   void add_filled(const Values& values);
   void prepare_dual(const Values& values);
+  Outcome factor_values(LinearSolver& solver, bool& analyzed, std::span<const double> values,
+                        StageSeconds& seconds);
   bool solve_matrix(StageSeconds& seconds);
   bool solve_dual(std::span<const double> row_rhs, StageSeconds& seconds);
   void to_unknowns(std::span<const Vec3> node_rhs);
@@ -101,6 +109,11 @@ class Kkt {
   int analyses_ = 0;
   std::int64_t linear_iterations_ = 0;
   bool analyzed_ = false;
+  // Of unsymmetric matrices: the solver, and the two triangles. `factored_` did the last matrix.
+  std::unique_ptr<LinearSolver> unsymmetric_solver_;
+  bool unsymmetric_analyzed_ = false;
+  std::vector<double> both_triangles_;
+  LinearSolver* factored_;
   double residual_ = 0;
   std::vector<double> values_, scale_, rhs_, solution_;
   // Rows outside the matrix: their Jacobian in free directions, the compliance of condensed ones and, for the

@@ -72,7 +72,9 @@ class LinearSolver {
   virtual void set_scale(std::span<const double> scale) { (void)scale; }
   // Ordering and symbolic work, once a topology. The pattern must outlive the solver's use of it.
   virtual FactorReport analyze(const SymmetricPattern& pattern) = 0;
-  // Numeric factorisation of the values that belong to the analysed pattern.
+  // Numeric factorisation of the values that belong to the analysed pattern. A solver from
+  // make_unsymmetric_solver() takes two triangles one after the other: the lower one with the diagonal, then
+  // the transposed upper one in the same places, with zeros on the diagonal.
   virtual FactorReport factor(std::span<const double> values) = 0;
   // Solves with iterative refinement against the values last factored (which must still be alive and
   // unchanged).
@@ -84,6 +86,10 @@ enum class SolverKind : std::uint8_t { automatic, mumps, cholmod, eigen, iterati
 // The backend asked for, or one that chooses among those built in. Null when the backend is not
 // part of this build. `prefer_iterative` is for `automatic`: factors only where iterations have failed.
 std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, bool prefer_iterative = false);
+
+// For matrices that are symmetric in their pattern alone: LU factors, without inertia. Never null; of a kind
+// that has no such factors the one that every build has.
+std::unique_ptr<LinearSolver> make_unsymmetric_solver(SolverKind kind);
 
 // The backends of this build with their licenses, for `isochor version`.
 struct SolverBackend {

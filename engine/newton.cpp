@@ -126,6 +126,7 @@ bool Newton::direction(std::span<const double> lambda, SaddleReport& report) {
         row_rhs_[r] += row_work_[r];
     }
   }
+  add_force_rate(node_work_);
   for (std::size_t i = 0; i < r_.size(); ++i) node_rhs_[i] = -(r_[i] + node_work_[i]);
   const std::int64_t before = kkt_.dual_iterations(), linear_before = kkt_.linear_iterations();
   const bool ok = kkt_.solve(node_rhs_, row_rhs_, dx_, lambda_new_, seconds_);
@@ -200,15 +201,17 @@ double Newton::merit(const SaddleProblem& p, double tau, std::span<const double>
   return sum;
 }
 
-// Moves the trial point to tau along the direction and evaluates there.
+// Moves the trial point to tau along the direction and evaluates there, with the lag of the iteration or one
+// of its own.
 double Newton::try_step(const SaddleProblem& p, double tau, std::span<const Vec3> x,
-                        std::span<const double> lambda, SaddleReport& report) {
+                        std::span<const double> lambda, SaddleReport& report, bool renew_lag) {
   const Stopwatch watch(seconds_.line_search);
   ++report.trials;
   for (std::size_t i = 0; i < x.size(); ++i) x_trial_[i] = x[i] + tau * dx_[i];
   for (std::size_t r = 0; r < lambda.size(); ++r) {
     lambda_trial_[r] = lambda[r] + tau * (lambda_new_[r] - lambda[r]);
   }
+  if (renew_lag) assembly_.renew_lag(x_trial_, lambda_trial_, p.prescribed);
   assembly_.evaluate(Want::gradient, Definiteness::exact, x_trial_, lambda_trial_, p.prescribed);
   assemble_residual(p, x_trial_, lambda_trial_);
   return merit(p, tau, lambda_trial_);
@@ -371,19 +374,21 @@ void Newton::keep_multipliers(const SaddleProblem& p, std::span<const Vec3> x, s
 bool Newton::correct(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                      std::span<double> lambda, SaddleReport& report) {
   constexpr double worthwhile = 0.3;  // less of a reduction and a new factorization is the better buy
-  if (!full_step_ || report.force_residual > 1e-2 || report.row_residual > 1e-2) return false;
+  if (!options.corrections || !full_step_ || report.force_residual > 1e-2 || report.row_residual > 1e-2)
+    return false;
   const bool lags = system_->has_lag();
+  // The lag is renewed with every one of them: what they converge to is the coupled problem.
+  if (lags) {
+    assembly_.renew_lag(x, lambda, p.prescribed);
+    assembly_.evaluate(Want::gradient, Definiteness::exact, x, lambda, p.prescribed);
+    assemble_residual(p, x, lambda);
+    if (balanced(p, options, x, lambda, report)) return true;
+  }
   for (int k = 0; k < (lags ? 12 : 6); ++k) {
-    if (lags) {
-      assembly_.renew_lag(x, lambda, p.prescribed);
-      assembly_.evaluate(Want::gradient, Definiteness::exact, x, lambda, p.prescribed);
-      assemble_residual(p, x, lambda);
-      if (balanced(p, options, x, lambda, report)) return true;
-    }
     position_gap(p, x);
     if (has_gap_ || !direction(lambda, report)) return false;
     const double force = report.force_residual, row = report.row_residual;
-    if (!std::isfinite(try_step(p, 1, x, lambda, report))) return false;
+    if (!std::isfinite(try_step(p, 1, x, lambda, report, lags))) return false;
     ++report.corrections;
     const bool done = balanced(p, options, x_trial_, lambda_trial_, report);
     const bool pays = report.force_residual <= std::max(worthwhile * force, options.force_tolerance) &&
@@ -391,9 +396,26 @@ bool Newton::correct(const SaddleProblem& p, const SaddleOptions& options, std::
     if (!pays) return false;
     std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
     keep_multipliers(p, x, lambda);
-    if (done && !lags) return true;
+    if (done) return true;
   }
   return false;
+}
+
+void Newton::begin_search(const SaddleOptions& options) {
+  venture_.under_way = false;
+  venture_.failed = 0;
+  venture_.length = 1;
+  definiteness_ = options.definiteness;
+  gamma_ = 0.1;
+}
+
+bool Newton::left_all_bounds(std::span<const Vec3> x) const {
+  const System& s = *system_;
+  const Vec3 origin = s.nodes() > 0 ? s.parts().rest[0] : Vec3{};
+  return !std::all_of(x.begin(), x.end(), [&](const Vec3& xi) {
+    const Vec3 d = xi - origin;
+    return dot(d, d) <= 1e8 * s.length() * s.length();
+  });
 }
 
 SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
@@ -405,14 +427,9 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
   };
   if (!all_finite(p)) return fail(SaddleStatus::not_finite);
   begin(p);
-  venture_.under_way = false;
-  venture_.failed = 0;
-  venture_.length = 1;
-  definiteness_ = options.definiteness;
-  gamma_ = 0.1;
+  begin_search(options);
   const System& s = *system_;
   clamp(lambda);
-  const Vec3 origin = s.nodes() > 0 ? s.parts().rest[0] : Vec3{};
   for (int iteration = 0;; ++iteration) {
     {
       const Stopwatch watch(seconds_.evaluate);
@@ -446,10 +463,7 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     if (progress) progress(report.iterations, report.force_residual, report.row_residual);
     // With a lag, balance counts only once it is renewed.
     if ((done && !s.has_lag()) || correct(p, options, x, lambda, report)) return report;
-    for (const Vec3& xi : x) {
-      const Vec3 d = xi - origin;
-      if (!(dot(d, d) <= 1e8 * s.length() * s.length())) return fail(SaddleStatus::diverged);
-    }
+    if (left_all_bounds(x)) return fail(SaddleStatus::diverged);
   }
 }
 

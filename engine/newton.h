@@ -28,29 +28,35 @@ class Newton : public SaddlePoint {
  protected:
   void choose_clamped(std::span<const double> lambda, bool first);
   bool direction(std::span<const double> lambda, SaddleReport& report);
-
-  std::vector<double> lambda_new_, lambda_trial_;
-  std::vector<Vec3> dx_, x_trial_;
-
- private:
+  // Adds to the rate of the forces [N] along what direction() has settled already: gap_ of given nodes, and
+  // to_bound_ of multipliers that the matrix holds at a bound.
+  virtual void add_force_rate(std::span<Vec3> rate) { (void)rate; }
+  void begin_search(const SaddleOptions& options);  // of a solve
+  bool left_all_bounds(std::span<const Vec3> x) const;
   bool descends(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda);
   bool mend_direction(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
                       SaddleReport& report);
-  void keep_multipliers(const SaddleProblem& p, std::span<const Vec3> x, std::span<double> lambda);
+  double longest_step(double tau);
+  bool search(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda, SaddleReport& report);
   bool correct(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                std::span<double> lambda, SaddleReport& report);
+
+  std::vector<double> lambda_new_, lambda_trial_;
+  std::vector<Vec3> dx_, x_trial_;
+  bool full_step_ = false;
+  std::vector<double> bound_, to_bound_;  // rows with bounds: the bound, and how far away it is
+
+ private:
+  void keep_multipliers(const SaddleProblem& p, std::span<const Vec3> x, std::span<double> lambda);
   double merit(const SaddleProblem& p, double tau, std::span<const double> lambda) const;
   double merit_slope(std::span<const double> lambda);
-  double longest_step(double tau);
   double try_step(const SaddleProblem& p, double tau, std::span<const Vec3> x, std::span<const double> lambda,
-                  SaddleReport& report);
+                  SaddleReport& report, bool renew_lag = false);
   bool may_venture() const;
   void venture(std::span<const Vec3> x, std::span<const double> lambda, double enough, double excess);
   bool settle_venture(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda,
                       SaddleReport& report);
-  bool search(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda, SaddleReport& report);
 
-  bool full_step_ = false;
   // A step that the merit refused and that was taken all the same, until one more Newton step has shown
   // where it leads: where it started, its direction, and the merit that must be reached.
   struct Venture {
@@ -66,7 +72,6 @@ class Newton : public SaddlePoint {
   double gamma_ = 0.1;  // more would follow the volume too closely, less would lose descent; raised as needed
 
   std::vector<double> row_work_, row_rhs_;
-  std::vector<double> bound_, to_bound_;  // rows with bounds: the bound, and how far away it is
   std::vector<Vec3> node_work_, node_rhs_, reaction_;
 };
 

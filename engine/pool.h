@@ -50,6 +50,13 @@ struct StencilSlots {
       hessian;  // [hessian_offset(s) + a (a + 1) / 2 + b], b <= a: second derivative of the same sum
 };
 
+// Where the derivatives of the gradient in what a pool holds on to go (StencilLag), n and K as above.
+struct LagSlots {
+  std::span<const std::int64_t> block_offset;  // of every stencil in `block`
+  std::span<Mat3> block;                       // [block_offset[s] + a * n + b] d gradient_a / d lag.x_b
+  std::span<Vec3> column;                      // [first * K + k * n + a] d gradient_a / d lag multiplier_k
+};
+
 class Parallel;
 class StencilPool;
 
@@ -84,6 +91,15 @@ class StencilPool {
 
   // True when evaluate() reads request.lag. An equilibrium is one with what it would renew.
   virtual bool has_lag() const { return false; }
+  // True when the linear systems are to know how forces change with what a pool with a lag holds on to. They
+  // are unsymmetric then, and converge as Newton's method does rather than in the pace of the lag.
+  virtual bool couples() const { return false; }
+  // Fills the slots of stencils [begin, end) of a pool that couples; the lag is at x, with the multipliers of
+  // the request.
+  virtual void lag_derivatives(const StencilRequest& request, const LagSlots& slots) const {
+    (void)request;
+    (void)slots;
+  }
   // Numbers kept between steps (the pull of a friction force): part of State, zero at the start.
   virtual int memory() const { return 0; }
   // What they become when a step is accepted; the request holds the new positions and the old memory.
@@ -150,6 +166,13 @@ struct RowIncrement {
   std::span<const double> memory;  // RowPool::memory() numbers as the last accepted step left them
 };
 
+// What an increment of dynamics begins from, for rows that look back at it.
+struct RowStart {
+  double t0 = 0, t1 = 0;        // [s]
+  std::span<const Vec3> x, v;   // positions [m] and velocities [m/s] of all nodes
+  std::span<const Vec3> ahead;  // where these velocities carry them until t1 [m]
+};
+
 // Rows of one effect over the functions of one stencil pool: phi_r = sum_i weight_i * function_i.
 class RowPool {
  public:
@@ -175,6 +198,16 @@ class RowPool {
   virtual void update(double t, std::span<double> value) const {
     (void)t;
     for (double& v : value) v = 0;
+  }
+  // True when targets depend on where an increment begins as well (what hits and bounces off).
+  virtual bool looks_back() const { return false; }
+  // Changes the targets of an increment that update() has filled for its end, and says whether they make
+  // velocities jump. Such an increment is one of implicit Euler, in which a row whose function grows by d
+  // ends with the rate d / h, and a scheme starts anew behind it.
+  virtual bool look_back(const RowStart& start, std::span<double> value) const {
+    (void)start;
+    (void)value;
+    return false;
   }
   // As Prescriber::turn(), of the targets.
   virtual double turn(double t0, double t1) const {

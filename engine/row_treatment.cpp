@@ -14,11 +14,13 @@ static bool bounded(const RowPool& pool) {
 RowTreatment RowTreatments::choose(const RowPool& pool) const {
   constexpr double smallest = 1e-6;  // compliance against the row metric: mu / kappa for volume rows
   if (pool.treatment != RowTreatment::automatic) return pool.treatment;
+  if (couples(pool)) return RowTreatment::saddle;
   switch (system_.parts_.treatment) {
     case RowTreatment::automatic:
       break;
     case RowTreatment::condensed:
-      if (!bounded(pool) && few_wide_rows(pool)) return RowTreatment::bordered;
+      if (!bounded(pool) && few_wide_rows(pool))
+        return system_.couples() ? RowTreatment::saddle : RowTreatment::bordered;
       return check_condensed(pool, "") ? RowTreatment::condensed : RowTreatment::saddle;
     case RowTreatment::dual:
     case RowTreatment::augmented:
@@ -39,6 +41,10 @@ RowTreatment RowTreatments::choose(const RowPool& pool) const {
     if (e.value < smallest * pool.metric[at(e.row)]) return RowTreatment::saddle;
   }
   return RowTreatment::condensed;
+}
+
+bool RowTreatments::couples(const RowPool& pool) const {
+  return system_.couples() && system_.parts_.stencil_pools[at(pool.stencil_pool)]->couples();
 }
 
 // Rows over whole bodies: bordered where the matrix is that of the stiffness.
@@ -81,6 +87,18 @@ Result<void> RowTreatments::sort() {
     const RowPool& pool = *system_.parts_.row_pools[p];
     if (pool.law != RowLaw::compliant) continue;
     const std::string who = "rows \"" + std::string(pool.name()) + "\": ";
+    if (couples(pool) && pool.treatment != RowTreatment::automatic &&
+        pool.treatment != RowTreatment::saddle) {
+      return Error{
+          who +
+          "their part of the matrix is unsymmetric (they are coupled), so they are unknowns of it; use "
+          "treatment saddle or automatic"};
+    }
+    if (system_.couples() && pool.treatment == RowTreatment::bordered) {
+      return Error{who +
+                   "bordered rows want a symmetric matrix, and an effect of this scene is coupled; use "
+                   "treatment saddle for them, or that effect lagged"};
+    }
     if (pool.treatment == RowTreatment::bordered && bounded(pool)) {
       return Error{who +
                    "rows with bounds change between free and held, so they are not bordered; use treatment "

@@ -17,6 +17,7 @@ class RowTreatments {
 
  private:
   RowTreatment choose(const RowPool& pool) const;
+  bool couples(const RowPool& pool) const;
   bool few_wide_rows(const RowPool& pool) const;
   Index index_of(const RowPool& pool) const;
   std::size_t nodes_of_row(Index row) const;

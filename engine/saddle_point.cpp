@@ -61,6 +61,7 @@ void SaddleReport::add_work(const SaddleReport& earlier) {
   factorizations += earlier.factorizations;
   trials += earlier.trials;
   corrections += earlier.corrections;
+  lagged += earlier.lagged;
   projected += earlier.projected;
   shifted += earlier.shifted;
   dual_steps += earlier.dual_steps;

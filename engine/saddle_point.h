@@ -16,6 +16,7 @@ struct SaddleOptions {
   double force_tolerance = 1e-9;
   // max |phi - target - C lambda| / measure: relative volume for volume rows.
   double row_tolerance = 1e-10;
+  bool corrections = true;  // whether factors at hand may be used again
   // Of the stencils' Hessians in every matrix.
   Definiteness definiteness = Definiteness::exact;
   // Largest distance to a prescribed position, relative to the scene's length.
@@ -52,6 +53,7 @@ struct SaddleReport {
   SaddleStatus status = SaddleStatus::converged;
   int iterations = 0, factorizations = 0, trials = 0;
   int corrections = 0;                 // further steps on factors at hand
+  int lagged = 0;                      // iterations of a coupled system that held the lag
   int projected = 0, shifted = 0;      // iterations mended by projection and by a diagonal shift
   int dual_steps = 0;                  // of dual ascent
   std::int64_t dual_iterations = 0;    // of conjugate gradients on multipliers

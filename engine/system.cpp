@@ -329,6 +329,7 @@ class SystemCompiler {
       s_->first_stencil_memory_.push_back(s_->memory_);
       s_->memory_ += pool->memory();
       s_->has_lag_ = s_->has_lag_ || pool->has_lag();
+      s_->couples_ = s_->couples_ || (pool->has_lag() && pool->couples());
       s_->has_barrier_ = s_->has_barrier_ || pool->has_barrier();
       s_->has_followers_ = s_->has_followers_ || pool->follows();
     }

@@ -122,6 +122,7 @@ class System {
   Index first_stencil_memory(Index stencil_pool) const { return first_stencil_memory_[at(stencil_pool)]; }
   // Some stencils hold on to positions and multipliers within an iteration; nodes could pass through some.
   bool has_lag() const { return has_lag_; }
+  bool couples() const { return couples_; }  // some of these want unsymmetric matrices
   bool has_barrier() const { return has_barrier_; }
   bool has_followers() const { return has_followers_; }  // stencils that change with what is close
   std::span<const double> row_metric() const { return row_metric_; }
@@ -156,7 +157,7 @@ class System {
   std::vector<BorderCompliance> border_compliance_;
   Index memory_ = 0;
   std::vector<Index> first_memory_, first_stencil_memory_;
-  bool has_lag_ = false, has_barrier_ = false, has_followers_ = false;
+  bool has_lag_ = false, couples_ = false, has_barrier_ = false, has_followers_ = false;
 };
 
 }  // namespace isochor

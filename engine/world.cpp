@@ -144,6 +144,9 @@ void World::Impl::allocate() {
       add_nodal_volume(*body.reference, parts.rest, body.global_cells, region.cells, region.density, weight);
     }
   }
+  if (std::any_of(parts.row_pools.begin(), parts.row_pools.end(),
+                  [](const auto& p) { return p->looks_back(); }))
+    no_past.assign(options.scheme->memory(n), 0);
   evaluate_data(0);
 }
 
@@ -290,11 +293,27 @@ SaddleReport World::Impl::solve_increment(SaddleProblem& problem, const Allowanc
   return report;
 }
 
+// Has rows that look back change their targets for the increment; true when velocities jump in it.
+bool World::Impl::look_back(double t, double h) {
+  bool jumps = false, ahead = false;
+  for (Index p = 0; p < static_cast<Index>(system->parts().row_pools.size()); ++p) {
+    const RowPool& pool = *system->parts().row_pools[at(p)];
+    if (!pool.looks_back() || pool.law != RowLaw::compliant) continue;
+    for (std::size_t i = 0; i < x_trial.size() && !ahead; ++i) x_trial[i] = state.x[i] + h * state.v[i];
+    ahead = true;
+    const auto targets = std::span(target).subspan(at(system->first_row(p)), at(pool.rows()));
+    jumps = pool.look_back({state.t, t, state.x, state.v, x_trial}, targets) || jumps;
+  }
+  return jumps;
+}
+
 SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
   constexpr int most_looks = 8;
   const double h_evaluated = options.scheme->evaluated_at() * h, t_new = state.t + h_evaluated;
   SaddleProblem problem = problem_at(t_new);
-  problem.mass_scale = options.scheme->begin(state, scheme_memory(), h, predicted);
+  starts_anew = look_back(t_new, h_evaluated);
+  problem.mass_scale = options.scheme->begin(
+      state, starts_anew ? std::span<const double>(no_past) : scheme_memory(), h, predicted);
   problem.predicted = predicted;
   const bool dynamic = problem.mass_scale > 0;
   if (dynamic) problem.increment.h = h_evaluated;
@@ -344,7 +363,11 @@ SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
 // Makes the trial positions and multipliers the state.
 void World::Impl::accept(double h, std::span<const Vec3> prediction) {
   accept_memory({options.scheme->has_inertia() ? h : 0, state.x, state.t, state.t + h});
+  // No past in the increment itself, and none behind it: it would hold the velocities before the jump.
+  const auto forget = [this] { std::fill(scheme_memory().begin(), scheme_memory().end(), 0.0); };
+  if (starts_anew) forget();
   options.scheme->finish(h, x_trial, prediction, state, scheme_memory());
+  if (starts_anew) forget();
   std::copy(lambda_trial.begin(), lambda_trial.end(), state.lambda.begin());
   std::copy(newton->residual().begin(), newton->residual().end(), reactions.begin());
 }

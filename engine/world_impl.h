@@ -36,7 +36,9 @@ struct World::Impl {
       memory_before;  // weight: consistent nodal mass [kg]
 
   std::vector<double> amounts_before;
-  State state_before;  // of an increment that the control of errors may take back
+  bool starts_anew = false;     // the increment under way makes velocities jump (RowPool::look_back)
+  std::vector<double> no_past;  // of a scheme in such an increment
+  State state_before;           // of an increment that the control of errors may take back
 
   bool compiled() const { return newton != nullptr; }
   Result<void> compile();
@@ -71,6 +73,7 @@ struct World::Impl {
     bool keep_unfinished = false;
   };
   SaddleProblem problem_at(double t);
+  bool look_back(double t, double h);
   SaddleOptions saddle_options(const Allowance& allowance) const;
   SaddleReport attempt(double h, const Allowance& allowance);
   SaddleReport solve_increment(SaddleProblem& problem, const Allowance& allowance, bool from_guess);

@@ -1,7 +1,10 @@
 // Which method solves the saddle points of a world.
+#include <algorithm>
+
 #include "engine/dual_ascent.h"
 #include "engine/path_follower.h"
 #include "engine/position_based.h"
+#include "engine/unsymmetric_newton.h"
 #include "engine/world_impl.h"
 
 namespace isochor {
@@ -51,6 +54,31 @@ RowTreatment treatment_of(Method method) {
   return RowTreatment::automatic;
 }
 
+// Why a coupled pool cannot be solved as asked; empty when it can.
+std::string no_coupling(const SystemParts& parts, const WorldOptions& options) {
+  const auto pool = std::find_if(parts.stencil_pools.begin(), parts.stencil_pools.end(),
+                                 [](const auto& p) { return p->has_lag() && p->couples(); });
+  if (pool == parts.stencil_pools.end()) return {};
+  const std::string who = "world: \"" + std::string((*pool)->name()) + "\" is coupled, ";
+  if (options.scheme->follows_paths())
+    return who + "and continuation() tells stability by the inertia of a symmetric matrix; use lagged";
+  if (options.solver == Solver::iterative)
+    return who +
+           "which makes matrices unsymmetric, and solver iterative wants symmetric ones; use another "
+           "solver, or lagged";
+  switch (options.method) {
+    case Method::automatic:
+    case Method::saddle_point:
+    case Method::condensation:
+      return {};
+    case Method::position_based:
+      return who + "and method position_based has no linear system to couple; use another method, or lagged";
+    default:
+      return who + "which makes matrices unsymmetric, and method " + std::string(name_of(options.method)) +
+             " rests on symmetric positive definite ones; use saddle_point, or lagged";
+  }
+}
+
 }  // namespace
 
 Result<void> World::Impl::make_method(SystemParts parts) {
@@ -66,6 +94,17 @@ Result<void> World::Impl::make_method(SystemParts parts) {
     return Error{"world: \"" + std::string(pool->name()) +
                  "\" changes with what is close, which continuation() does not follow; use statics()"};
   }
+  for (const auto& pool : parts.row_pools) {
+    if (!pool->looks_back()) continue;
+    const std::string who = "world: \"" + std::string(pool->name()) + "\" makes velocities jump, ";
+    if (!options.scheme->has_inertia())
+      return Error{who + "and " + std::string(options.scheme->name()) +
+                   " has none; use a scheme of dynamics"};
+    if (options.scheme->evaluated_at() != 1)
+      return Error{who + "which " + std::string(options.scheme->name()) +
+                   " spreads over the middles of two steps; use another scheme"};
+  }
+  if (const std::string why = no_coupling(parts, options); !why.empty()) return Error{why};
   const bool positions = options.method == Method::position_based;
   if (positions && !options.scheme->has_inertia()) {
     return Error{
@@ -100,7 +139,8 @@ Result<void> World::Impl::make_method(SystemParts parts) {
     return Error{"world: method position_based has no answer for this scene: " + what +
                  "; use another method"};
   }
-  auto solver = make_linear_solver(static_cast<SolverKind>(options.solver), large);
+  const auto kind = static_cast<SolverKind>(options.solver);
+  auto solver = make_linear_solver(kind, large && !system->couples());
   if (!solver) return Error{"world: this build has no linear solver"};
   if (ascent) {
     DualAscentOptions ascent_options;
@@ -110,6 +150,9 @@ Result<void> World::Impl::make_method(SystemParts parts) {
     newton = std::make_unique<PositionBased>(system, *parallel, std::move(solver), options.sweeps);
   } else if (follows) {
     newton = std::make_unique<PathFollower>(system, *parallel, std::move(solver));
+  } else if (system->couples()) {
+    newton = std::make_unique<UnsymmetricNewton>(system, *parallel, std::move(solver),
+                                                 make_unsymmetric_solver(kind));
   } else {
     newton = std::make_unique<Newton>(system, *parallel, std::move(solver));
   }

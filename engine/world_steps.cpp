@@ -16,6 +16,7 @@ void accumulate(StepReport& total, const SaddleReport& r) {
   total.factorizations += r.factorizations;
   total.trials += r.trials;
   total.corrections += r.corrections;
+  total.lagged += r.lagged;
   total.projected += r.projected;
   total.shifted += r.shifted;
   total.dual_steps += r.dual_steps;

@@ -57,7 +57,8 @@ FactorReport DirectSolver::factor(std::span<const double> values) {
   factored_ = false;
   FactorReport report;
   try {
-    if (pattern_ == nullptr || values.size() != static_cast<std::size_t>(pattern_->nonzeros())) {
+    const std::size_t triangles = two_triangles_ ? 2 : 1;
+    if (pattern_ == nullptr || values.size() != triangles * static_cast<std::size_t>(pattern_->nonzeros())) {
       report.status = FactorStatus::failed;
       report.message = pattern_ == nullptr ? "factor was called without a successful analyze"
                                            : "the number of values is not that of the analysed pattern";
@@ -137,6 +138,7 @@ SolveReport DirectSolver::refine(std::span<const double> b, std::span<double> x)
 
 double DirectSolver::compute_residual(std::span<const double> b, std::span<const double> x) {
   const double* const v = values_.data();
+  const double* const upper = two_triangles_ ? v + pattern_->nonzeros() : v;
   const Index* const row = pattern_->row.data();
   const std::int64_t* const start = pattern_->column_start.data();
   double* const r = residual_.data();
@@ -150,7 +152,7 @@ double DirectSolver::compute_residual(std::span<const double> b, std::span<const
         sum += v[k] * xc;
       } else {
         r[i] -= v[k] * xc;
-        sum += v[k] * x[at(i)];
+        sum += upper[k] * x[at(i)];
       }
     }
     r[c] -= sum;

@@ -10,6 +10,9 @@ namespace isochor {
 // A backend implements the three protected functions for a non-empty, well-formed matrix with finite values.
 class DirectSolver : public LinearSolver {
  public:
+  // Of matrices given by one triangle or by two (LinearSolver::factor).
+  explicit DirectSolver(bool two_triangles = false) : two_triangles_(two_triangles) {}
+
   FactorReport analyze(const SymmetricPattern& pattern) final;
   FactorReport factor(std::span<const double> values) final;
   SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) final;
@@ -23,6 +26,7 @@ class DirectSolver : public LinearSolver {
   // The refined solution and how good it is. Also what a backend probes a doubtful factor with.
   SolveReport refine(std::span<const double> b, std::span<double> x);
 
+  bool two_triangles() const { return two_triangles_; }
   const SymmetricPattern& pattern() const { return *pattern_; }
   std::span<const double> values() const { return values_; }
   double norm() const { return norm_; }  // infinity norm of the values last given to factor
@@ -33,6 +37,7 @@ class DirectSolver : public LinearSolver {
   // residual = b - A x; returns its infinity norm, NaN included.
   double compute_residual(std::span<const double> b, std::span<const double> x);
 
+  bool two_triangles_;
   const SymmetricPattern* pattern_ = nullptr;
   std::span<const double> values_;
   std::vector<double> residual_, correction_, best_;

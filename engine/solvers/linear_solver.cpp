@@ -4,6 +4,7 @@
 #include "engine/solvers/chosen_solver.h"
 #include "engine/solvers/eigen_solver.h"
 #include "engine/solvers/iterative_solver.h"
+#include "engine/solvers/lu_solver.h"
 #include "engine/solvers/mumps_solver.h"
 #include "engine/solvers/ordering.h"
 
@@ -33,6 +34,17 @@ std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, bool prefer_it
   ChoiceOptions choice;
   choice.prefer_iterative = prefer_iterative;
   return std::make_unique<ChosenSolver>(std::move(direct), make_iterative_solver(), choice);
+}
+
+std::unique_ptr<LinearSolver> make_unsymmetric_solver(SolverKind kind) {
+  if (blas_threads() == 0) set_blas_threads(default_blas_threads);
+  std::unique_ptr<LinearSolver> solver;
+  if (kind == SolverKind::automatic || kind == SolverKind::mumps) {
+    MumpsOptions options;
+    options.unsymmetric = true;
+    solver = make_mumps_solver(options);
+  }
+  return solver ? std::move(solver) : make_eigen_lu_solver();
 }
 
 std::vector<SolverBackend> linear_solver_backends() {

@@ -28,7 +28,7 @@ constexpr int job_start = -1, job_end = -2, job_analyze = 1, job_factor = 2, job
 
 class MumpsSolver final : public DirectSolver {
  public:
-  explicit MumpsSolver(const MumpsOptions& options) : options_(options) {}
+  explicit MumpsSolver(const MumpsOptions& options) : DirectSolver(options.unsymmetric), options_(options) {}
   ~MumpsSolver() override { close(); }
   MumpsSolver(const MumpsSolver&) = delete;
   MumpsSolver& operator=(const MumpsSolver&) = delete;
@@ -104,9 +104,15 @@ FactorReport MumpsSolver::analyze_pattern() {
       column_[static_cast<std::size_t>(k)] = c + 1;
     }
   }
+  if (two_triangles()) {
+    // Entries named twice are added up, so the zeros on the second diagonal do no harm.
+    const auto row = row_, column = column_;
+    row_.insert(row_.end(), column.begin(), column.end());
+    column_.insert(column_.end(), row.begin(), row.end());
+  }
 
   mumps_ = {};
-  mumps_.sym = 2;
+  mumps_.sym = two_triangles() ? 0 : 2;
   mumps_.par = 1;
   mumps_.comm_fortran = use_communicator_of_all;
   call(job_start);
@@ -126,7 +132,7 @@ FactorReport MumpsSolver::analyze_pattern() {
   cntl(3) = options_.singular_threshold;
 
   mumps_.n = p.size;
-  mumps_.nnz = p.nonzeros();
+  mumps_.nnz = static_cast<MUMPS_INT8>(row_.size());
   mumps_.irn = row_.data();
   mumps_.jcn = column_.data();
   // Without groups there is nothing that keeps a zero diagonal behind its neighbors; MUMPS has means of its
@@ -188,7 +194,7 @@ FactorReport MumpsSolver::factor_values() {
   }
   if (infog(1) < 0) return failure("the factorisation");
   FactorReport report;
-  report.negative_pivots = infog(12);
+  report.negative_pivots = two_triangles() ? -1 : infog(12);
   report.factor_nonzeros = infog(9) < 0 ? -std::int64_t{infog(9)} * 1000000 : infog(9);
   if (infog(28) > 0) {
     report.status = FactorStatus::singular;

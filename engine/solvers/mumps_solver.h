@@ -25,6 +25,8 @@ struct MumpsOptions {
   OrderingMethod ordering = OrderingMethod::best;
   // One of MUMPS' own orderings (its ICNTL(7)) instead of ours on the groups; -1: ours.
   int own_ordering = -1;
+  // LU of a matrix given by two triangles (LinearSolver::factor).
+  bool unsymmetric = false;
 };
 
 // Null when MUMPS is not part of this build.

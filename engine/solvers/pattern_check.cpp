@@ -43,6 +43,8 @@ std::string check(const SymmetricPattern& p) {
 double matrix_norm(const SymmetricPattern& pattern, std::span<const double> values,
                    std::span<double> row_sum) {
   const double* const v = values.data();
+  const bool two_triangles = values.size() > static_cast<std::size_t>(pattern.nonzeros());
+  const double* const upper = two_triangles ? v + pattern.nonzeros() : v;
   std::fill(row_sum.begin(), row_sum.end(), 0.0);
   // One NaN or infinity makes the sum of zeros NaN.
   double poison = 0;
@@ -51,9 +53,9 @@ double matrix_norm(const SymmetricPattern& pattern, std::span<const double> valu
     for (auto k = pattern.column_start[at(c)]; k < pattern.column_start[at(c) + 1]; ++k) {
       const Index r = pattern.row[static_cast<std::size_t>(k)];
       const double a = std::abs(v[k]);
-      poison += v[k] * 0.0;
+      poison += v[k] * 0.0 + upper[k] * 0.0;
       row_sum[at(r)] += a;
-      if (r != c) column += a;
+      if (r != c) column += std::abs(upper[k]);
     }
     row_sum[at(c)] += column;
   }

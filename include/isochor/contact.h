@@ -58,6 +58,15 @@ struct RigidBodyDef {
 };
 EffectPtr rigid_body(RigidBodyDef def);
 
+// How the linear systems see that friction depends on the normal force and turns with the surface. Both end
+// at the same solution.
+enum class FrictionCoupling : std::uint8_t {
+  lagged,   // these are held within an iteration: symmetric systems with a merit, converging in the pace of
+            // the lag
+  coupled,  // they are part of the linear system, which is unsymmetric: quadratic convergence, factors (LU)
+            // of about twice the cost, no inertia to watch
+};
+
 // Nodes of a body's surface against one obstacle: they do not enter it, it does not pull, and friction holds
 // or brakes them. Add supports first: nodes that are held in all directions are left out.
 struct ContactDef {
@@ -74,6 +83,12 @@ struct ContactDef {
   // Of friction below its limit, shear stress over slip [Pa/m]: the slip that remains when it sticks is
   // elastic. 0: a hundred times the shear modulus over the size of a face.
   double stick_stiffness = 0;
+  FrictionCoupling coupling = FrictionCoupling::lagged;
+  // Newton's coefficient of restitution e [-], 0 to 1: what closes at a speed u beyond `restitution_speed`
+  // leaves the increment at e u. Hard contact in dynamics, each point by itself: a rigid body bounces, of a
+  // soft one the nodes do, while the body behind them is as elastic as it is.
+  double restitution = 0;
+  double restitution_speed = 0.05;  // [m/s]
   InitialOverlap initial_overlap = InitialOverlap::report;
   double resolve_time = 1;  // [s]; statics: load factor
 };
@@ -94,6 +109,7 @@ struct SurfaceContactDef {
   double thickness = 0;        // [m]: distance that the surfaces keep
   double friction = 0;         // as in ContactDef
   double stick_stiffness = 0;  // as in ContactDef
+  FrictionCoupling coupling = FrictionCoupling::lagged;
   InitialOverlap initial_overlap = InitialOverlap::report;
   double resolve_time = 1;  // [s]; statics: load factor
 };

@@ -137,6 +137,7 @@ struct StepReport {
   int substeps = 0, rejected_substeps = 0;
   int iterations = 0;   // Newton iterations, each with its own factorization
   int corrections = 0;  // further steps on factors at hand
+  int lagged = 0;       // FrictionCoupling::coupled: iterations that fell back to lagged friction
   int factorizations = 0, trials = 0;
   int projected = 0, shifted = 0;      // iterations whose matrix had to be mended
   int dual_steps = 0;                  // of dual ascent

@@ -264,6 +264,9 @@ void describe(Io& io, ContactDef& c) {
   io.number("compliance", c.compliance, 0.0);
   io.number("friction", c.friction, 0.0);
   io.number("stick_stiffness", c.stick_stiffness, 0.0);
+  io.word("coupling", c.coupling, FrictionCoupling::lagged);
+  io.number("restitution", c.restitution, 0.0);
+  io.number("restitution_speed", c.restitution_speed, 0.05);
   io.word("initial_overlap", c.initial_overlap, InitialOverlap::report);
   io.number("resolve_time", c.resolve_time, 1.0);
 }
@@ -279,6 +282,7 @@ void describe(Io& io, SurfaceContactDef& c) {
   io.number("thickness", c.thickness, 0.0);
   io.number("friction", c.friction, 0.0);
   io.number("stick_stiffness", c.stick_stiffness, 0.0);
+  io.word("coupling", c.coupling, FrictionCoupling::lagged);
   io.word("initial_overlap", c.initial_overlap, InitialOverlap::report);
   io.number("resolve_time", c.resolve_time, 1.0);
 }

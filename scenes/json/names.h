@@ -64,6 +64,8 @@ ISOCHOR_WORDS(ObstacleShape, 7, {ObstacleShape::plane, "plane"}, {ObstacleShape:
               {ObstacleShape::capsule, "capsule"}, {ObstacleShape::cylinder, "cylinder"},
               {ObstacleShape::box, "box"}, {ObstacleShape::mesh, "mesh"},
               {ObstacleShape::distance_field, "distance_field"});
+ISOCHOR_WORDS(FrictionCoupling, 2, {FrictionCoupling::lagged, "lagged"},
+              {FrictionCoupling::coupled, "coupled"});
 ISOCHOR_WORDS(InitialOverlap, 2, {InitialOverlap::report, "report"}, {InitialOverlap::resolve, "resolve"});
 ISOCHOR_WORDS(Quantity, 21, {Quantity::displacement, "displacement"},
               {Quantity::cavity_pressure, "cavity_pressure"}, {Quantity::cavity_volume, "cavity_volume"},

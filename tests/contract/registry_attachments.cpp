@@ -166,6 +166,12 @@ void add_contacts(std::vector<SceneCase>& out, Element element) {
                  contact(def));
     c.stress_free = c.rigid_invariant = false;  // distances to something that does not move with the body
     out.push_back(c);
+    if (element != Element::tet4) continue;
+    def.coupling = FrictionCoupling::coupled;
+    c.name += ", coupled";
+    c.covers = {"constraints/contact_coupling"};
+    c.effects.back() = contact(def);
+    out.push_back(c);
   }
 }
 
@@ -175,11 +181,12 @@ void add_surface_contacts(std::vector<SceneCase>& out, Element element) {
     SurfaceContactDef def;
     def.against = static_cast<BodyId>(1);
     def.friction = friction;
+    def.coupling = FrictionCoupling::coupled;
     def.thickness = 0.02;
     def.initial_overlap = InitialOverlap::resolve;
     SceneCase c = on_block(friction > 0 ? "surface contact with friction" : "surface contact", element,
                            {"constraints/surface_contact", "constraints/surface_contact_pool",
-                            "constraints/skin", "constraints/patch_distance"},
+                            "constraints/skin", "constraints/patch_distance", "constraints/surface_coupling"},
                            surface_contact(def));
     Vec3 low = c.mesh.nodes.front(), high = low;
     for (const Vec3& p : c.mesh.nodes) {
@@ -239,6 +246,7 @@ void add_rigid_bodies(std::vector<SceneCase>& out, Element element) {
     ContactDef touch;
     touch.against = "thing";
     touch.friction = 0.3;
+    touch.coupling = FrictionCoupling::coupled;
     SceneCase c =
         on_block("contact with a rigid body, shape " + std::to_string(static_cast<int>(shape)), element,
                  {"constraints/contact", "constraints/contact_frame", "constraints/rigid_body",
@@ -251,6 +259,8 @@ void add_rigid_bodies(std::vector<SceneCase>& out, Element element) {
     floor.rigid = "thing";
     floor.obstacle.position = {0, 0, -3};
     floor.obstacle.axis = {0.1, 0.2, 1};
+    floor.friction = 0.4;
+    floor.coupling = FrictionCoupling::coupled;
     c.name = "rigid body on a floor, shape " + std::to_string(static_cast<int>(shape));
     c.effects.back() = contact(floor);
     c.rigid_invariant = false;

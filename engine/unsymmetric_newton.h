@@ -1,0 +1,45 @@
+// Newton's method where some pools couple (StencilPool::couples): their forces follow from no potential, the
+// matrix is unsymmetric, and there is neither an inertia to watch nor a merit function.
+//
+// A step is searched on the size of the residual,
+//   R^2 = sum |r_i|^2 / k_i + sum D_r (projection(lambda + theta / D) - lambda)^2 + sum k_i |gap_i|^2,
+// an energy: the norms of SaddlePoint::measure with metrics in place of measures. An exact Newton step
+// descends it as long as the set of rows held at bounds stays. Where it does not get smaller within a tenth
+// of a step, the lag is held for an iteration, or for more of them with every time: symmetric, with the merit
+// of Newton. An iteration in which nothing makes the matrix unsymmetric is one of Newton anyway.
+#pragma once
+
+#include "engine/newton.h"
+
+namespace isochor {
+
+class UnsymmetricNewton final : public Newton {
+ public:
+  // `unsymmetric` is of make_unsymmetric_solver(); `solver` is for iterations that hold the lag.
+  UnsymmetricNewton(std::shared_ptr<const System> system, const Parallel& parallel,
+                    std::unique_ptr<LinearSolver> solver, std::unique_ptr<LinearSolver> unsymmetric);
+
+  SaddleReport solve(const SaddleProblem& problem, const SaddleOptions& options, std::span<Vec3> x,
+                     std::span<double> lambda) override;
+
+ protected:
+  void add_force_rate(std::span<Vec3> rate) override;
+
+ private:
+  void evaluate_here(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda);
+  bool coupled_step(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
+                    std::span<double> lambda, SaddleReport& report);
+  bool lagged_step(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda, SaddleReport& report);
+  bool factor_coupled(SaddleReport& report);
+  bool polish(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
+              std::span<double> lambda, SaddleReport& report);
+  double try_coupled(const SaddleProblem& p, double tau, std::span<const Vec3> x,
+                     std::span<const double> lambda, SaddleReport& report);
+  double residual_energy(std::span<const double> lambda, double gap_left) const;
+
+  UnsymmetricPart part_;
+  bool coupled_ = false;  // the factors at hand are those of the unsymmetric matrix
+  std::vector<double> no_rows_;
+};
+
+}  // namespace isochor
