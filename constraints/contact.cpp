@@ -63,6 +63,27 @@ class ContactInstance final : public EffectInstance {
     put("smallest_gap", "m", gap);
   }
 
+  bool surface_forces(const GaugeContext& c, SurfaceForces& f) const override {
+    const std::size_t nodes = c.state.x.size();
+    f.normal.assign(nodes, 0);
+    f.tangential.assign(nodes, Vec3{});
+    f.area.assign(nodes, 0);
+    const ContactFrame frame = pool_->frame(c.state.t, c.state.x);
+    const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
+    const double* pull = pool_->memory() > 0
+                             ? c.state.extra.data() + c.system.first_stencil_memory(rows_->stencil_pool)
+                             : nullptr;
+    for (Index s = 0; s < pool_->stencils(); ++s) {
+      if (pool_->rides(s)) continue;  // a point of a rigid body is no node of a surface
+      const std::size_t node = at(pool_->nodes()[s][0]);
+      f.area[node] = rows_->area[at(s)];
+      if (!(lambda[at(s)] < 0)) continue;
+      f.normal[node] = -lambda[at(s)];
+      if (pull) f.tangential[node] = -1.0 * (frame.A * Vec3{pull[3 * s], pull[3 * s + 1], pull[3 * s + 2]});
+    }
+    return true;
+  }
+
  private:
   std::shared_ptr<const ContactPool> pool_;
   std::shared_ptr<const ContactRows> rows_;

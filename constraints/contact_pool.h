@@ -51,6 +51,8 @@ class ContactPool final : public StencilPool {
   Index passing(const StencilIncrement& increment, std::span<const Vec3> x,
                 std::span<Vec3> stopped) const override;
 
+  // Whether the point of a stencil is on a rigid body and not a node.
+  bool rides(Index s) const { return rider_[at(s)].has_value(); }
   // Position of the point of a stencil, and the frame of the shape, at positions x and time t.
   Vec3 point(Index s, std::span<const Vec3> x) const;
   ContactFrame frame(double t, std::span<const Vec3> x) const {

@@ -40,15 +40,10 @@ class SurfaceContactInstance final : public EffectInstance {
   }
 
   void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
-    const auto& pool =
-        static_cast<const SurfaceContactPool&>(*c.system.parts().stencil_pools[at(rows_->stencil_pool)]);
+    const auto& pool = pool_of(c);
     const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
-    const auto memory = std::span<const double>(c.state.extra)
-                            .subspan(at(c.system.first_stencil_memory(rows_->stencil_pool)),
-                                     static_cast<std::size_t>(pool.memory()));
+    const auto memory = memory_of(c, pool);
     const auto& points = pool.setup().skin->points();
-    std::vector<double> pressed(c.state.x.size(), 0), pressed_area = pressed, whole_area = pressed;
-    std::set<std::pair<Index, Index>> counted;
     Vec3 force{};
     double normal = 0, tangential = 0, area = 0, gap = std::numeric_limits<double>::infinity();
     for (Index s = 0; s < pool.stencils(); ++s) {
@@ -56,14 +51,6 @@ class SurfaceContactInstance final : public EffectInstance {
       const PatchPoint near = pool.nearest(s, c.state.x);
       if (!std::isfinite(near.distance)) continue;
       gap = std::min(gap, near.distance - pool.setup().offset);
-      // Of the sheets that something is close to.
-      for (std::size_t k = 0; k < points[at(s)].nodes; ++k) {
-        const auto place = std::pair(points[at(s)].node[k], points[at(s)].sheet);
-        if (counted.insert(place).second) {
-          pressed_area[at(place.first)] += area_.at(place)[0];
-          whole_area[at(place.first)] += area_.at(place)[1];
-        }
-      }
       const double l = -lambda[at(s)];
       if (!(l > 0)) continue;
       const Vec3 pull = pool.kept_pull(s, memory, c.state.x);
@@ -72,20 +59,17 @@ class SurfaceContactInstance final : public EffectInstance {
       normal += l;
       tangential += std::sqrt(dot(pull, pull));
       area += 0.5 * rows_->area[at(s)];
-      const auto nodes = pool.nodes()[s];
-      for (std::size_t i = 0; i < nodes.size(); ++i)
-        pressed[at(nodes[i])] += (i < points[at(s)].nodes ? l : -l) * pool.share(s, i, near);
     }
     const EdgeContact::Totals edges = edges_.totals(c);
     if (!pool.setup().skin->single()) force += edges.force;
     normal += edges.normal;
     tangential += edges.tangential;
     gap = std::min(gap, edges.gap);
+    SurfaceForces at_nodes;
+    surface_forces(c, at_nodes);
     double pressure = 0;
-    for (std::size_t i = 0; i < pressed.size(); ++i) {
-      // Corners of faces with six nodes have no area of their own.
-      if (pressed_area[i] > 0.2 * whole_area[i] && whole_area[i] > 0)
-        pressure = std::max(pressure, pressed[i] / pressed_area[i]);
+    for (std::size_t i = 0; i < at_nodes.area.size(); ++i) {
+      if (at_nodes.area[i] > 0) pressure = std::max(pressure, at_nodes.normal[i] / at_nodes.area[i]);
     }
     const std::string name(rows_->name());
     const auto put = [&](const char* quantity, const char* unit, double value) {
@@ -101,7 +85,65 @@ class SurfaceContactInstance final : public EffectInstance {
     put("smallest_gap", "m", gap);
   }
 
+  bool surface_forces(const GaugeContext& c, SurfaceForces& f) const override {
+    const auto& pool = pool_of(c);
+    const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
+    const auto memory = memory_of(c, pool);
+    const auto& points = pool.setup().skin->points();
+    const std::size_t count = c.state.x.size();
+    f.normal.assign(count, 0);
+    f.tangential.assign(count, Vec3{});
+    f.area.assign(count, 0);
+    std::vector<double> size(count, 0);
+    // Where nothing is close to any sheet of a node, all of them count: there its pressure is zero.
+    std::vector<double> all_area(count, 0), all_size(count, 0);
+    std::set<std::pair<Index, Index>> counted;
+    for (const auto& [place, area] : area_) {
+      all_area[at(place.first)] += area[0];
+      all_size[at(place.first)] += area[1];
+    }
+    for (Index s = 0; s < pool.stencils(); ++s) {
+      if (!pool.close(s)) continue;
+      const PatchPoint near = pool.nearest(s, c.state.x);
+      if (!std::isfinite(near.distance)) continue;
+      // Of the sheets that something is close to.
+      for (std::size_t k = 0; k < points[at(s)].nodes; ++k) {
+        const auto place = std::pair(points[at(s)].node[k], points[at(s)].sheet);
+        if (!counted.insert(place).second) continue;
+        f.area[at(place.first)] += area_.at(place)[0];
+        size[at(place.first)] += area_.at(place)[1];
+      }
+      const double l = -lambda[at(s)];
+      if (!(l > 0)) continue;
+      const Vec3 pull = pool.kept_pull(s, memory, c.state.x);
+      const auto nodes = pool.nodes()[s];
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const double share = pool.share(s, i, near);
+        f.normal[at(nodes[i])] += (i < points[at(s)].nodes ? l : -l) * share;
+        f.tangential[at(nodes[i])] -= share * pull;
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (size[i] == 0) {
+        f.area[i] = all_area[i];
+        size[i] = all_size[i];
+      }
+      // Corners of faces with six nodes have no area of their own.
+      if (!(f.area[i] > 0.2 * size[i])) f.area[i] = 0;
+    }
+    return true;
+  }
+
  private:
+  const SurfaceContactPool& pool_of(const GaugeContext& c) const {
+    return static_cast<const SurfaceContactPool&>(*c.system.parts().stencil_pools[at(rows_->stencil_pool)]);
+  }
+  std::span<const double> memory_of(const GaugeContext& c, const SurfaceContactPool& pool) const {
+    return std::span<const double>(c.state.extra)
+        .subspan(at(c.system.first_stencil_memory(rows_->stencil_pool)),
+                 static_cast<std::size_t>(pool.memory()));
+  }
+
   std::shared_ptr<const ContactRows> rows_;
   Index row_pool_;
   std::shared_ptr<const Skin> skin_;

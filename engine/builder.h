@@ -43,6 +43,13 @@ struct GaugeContext {
   const State& state;
 };
 
+// What presses on and rubs along the surfaces of bodies, by scene node.
+struct SurfaceForces {
+  std::vector<double> normal;    // [N]
+  std::vector<Vec3> tangential;  // on the body [N]
+  std::vector<double> area;      // at rest, that the node stands for [m^2]; 0: the effect is not there
+};
+
 // The live part of an effect: what a host can set and read.
 class EffectInstance {
  public:
@@ -56,6 +63,13 @@ class EffectInstance {
   virtual void node_multipliers(const GaugeContext& context, std::span<double> pressure) const {
     (void)context;
     (void)pressure;
+  }
+  // Adds the forces that it exerts on surfaces, and fills in the areas of their nodes; false: it is of no
+  // such kind.
+  virtual bool surface_forces(const GaugeContext& context, SurfaceForces& forces) const {
+    (void)context;
+    (void)forces;
+    return false;
   }
 };
 

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "engine/recovery.h"
+#include "engine/surface_fields.h"
 #include "engine/world_impl.h"
 
 namespace isochor {
@@ -128,7 +129,9 @@ BodyFields World::fields(BodyId body) const {
   }
   std::vector<double> nodal(parts.rest.size(), std::nan(""));
   for (const auto& instance : w.instances) instance->node_multipliers({*w.system, w.state}, nodal);
-  return recover_fields({w.builder.body(body), parts, w.state.x, multipliers, nodal});
+  BodyFields fields = recover_fields({w.builder.body(body), parts, w.state.x, multipliers, nodal});
+  add_surface_fields(w.instances, {*w.system, w.state}, w.builder.body(body), fields);
+  return fields;
 }
 
 std::vector<Gauge> World::gauges() const {

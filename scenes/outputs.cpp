@@ -138,6 +138,10 @@ Result<void> RunOutputs::write_frame(const RunView& view, std::size_t b, const B
                        {"stress", 6, fields.node_stress}};
   if (view.scene.analysis.type == AnalysisType::dynamics)
     grid.point_fields.push_back({"velocity", 3, flat(v)});
+  if (!fields.node_contact_pressure.empty()) {
+    grid.point_fields.push_back({"contact_pressure", 1, fields.node_contact_pressure});
+    grid.point_fields.push_back({"friction", 3, fields.node_friction});
+  }
   grid.cell_fields = {{"J", 1, fields.cell_J},
                       {"von_mises", 1, fields.cell_von_mises},
                       {"pressure", 1, fields.cell_pressure},

@@ -183,6 +183,10 @@ struct BodyFields {
   std::vector<double> cell_von_mises;  // [Pa]
   std::vector<double> cell_stress;     // Cauchy stress xx yy zz xy yz zx [Pa], 6 a cell
   std::vector<double> cell_max_stretch;
+  // Normal and tangential force of contact on the body over the area at rest that a node stands for [Pa], the
+  // latter as x y z; zero where nothing touches. Empty: no contact of the scene is about this body.
+  std::vector<double> node_contact_pressure;
+  std::vector<double> node_friction;
 };
 
 struct ProgressInfo {

@@ -213,6 +213,16 @@ TEST_CASE("statics: friction carries a push up to its limit, the rest goes on") 
   CHECK(stuck < 2e-3);
   test::must_advance(world);
   CHECK(gauge_of(world, "force_x") == Approx(-friction * weight).epsilon(0.02));
+  // The fields say the same node by node.
+  const BodyFields fields = world.fields(body);
+  std::size_t pressed = 0;
+  for (std::size_t i = 0; i < fields.node_contact_pressure.size(); ++i) {
+    if (!(fields.node_contact_pressure[i] > 1)) continue;
+    ++pressed;
+    CHECK(fields.node_friction[3 * i] == Approx(-friction * fields.node_contact_pressure[i]).epsilon(0.02));
+    CHECK(std::abs(fields.node_friction[3 * i + 2]) < 1e-9 * fields.node_contact_pressure[i]);
+  }
+  CHECK(pressed > 10);
   const double slid = test::displacement_at(world, body, {0.1, 0.05, 0.04}).x;
   CHECK(slid == Approx(0.5 * friction * weight / 20).epsilon(0.05));
 }

@@ -113,6 +113,22 @@ CellType cells(Element e) {
   return e == Element::hex8 ? CellType::hex8 : (e == Element::tet10 ? CellType::tet10 : CellType::tet4);
 }
 
+// The field of contact pressure on the face z = 0 of a block, and nothing elsewhere.
+void check_field(const World& world, BodyId body, double pressure, double tolerance) {
+  const BodyFields fields = world.fields(body);
+  const auto rest = world.rest_positions(body);
+  REQUIRE(fields.node_contact_pressure.size() == rest.size());
+  REQUIRE(fields.node_friction.size() == 3 * rest.size());
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    INFO("node at " << rest[i].x << " " << rest[i].y << " " << rest[i].z);
+    if (rest[i].z == 0)
+      CHECK(fields.node_contact_pressure[i] == Approx(pressure).epsilon(tolerance));
+    else
+      CHECK(fields.node_contact_pressure[i] == 0);
+    for (std::size_t k = 0; k < 3; ++k) CHECK(fields.node_friction[3 * i + k] == 0);
+  }
+}
+
 }  // namespace
 
 TEST_CASE("a flat face pressed on a plane has a uniform pressure, whatever the mesh") {
@@ -135,6 +151,7 @@ TEST_CASE("a flat face pressed on a plane has a uniform pressure, whatever the m
         gauge_of(world, "floor", "normal_force") / gauge_of(world, "floor", "contact_area");
     CHECK(gauge_of(world, "floor", "contact_area") == Approx(1).epsilon(1e-12));
     CHECK(gauge_of(world, "floor", "largest_pressure") == Approx(pressure).epsilon(1e-7));
+    check_field(world, body, pressure, 1e-7);
     CHECK(std::abs(gauge_of(world, "floor", "smallest_gap")) < 1e-10);
   }
 }

@@ -85,6 +85,18 @@ TEST_CASE("a pressure passes uniformly through faces that do not match") {
         for (std::size_t c = 2; c < stress.size(); c += 6)
           worst = std::max(worst, std::abs(stress[c] / mean - 1));
         CHECK(worst < 0.01);
+        // So does the field at the nodes of the faces between them, and only there.
+        const std::vector<double> pressure = s.world.fields(b).node_contact_pressure;
+        const auto rest = s.world.rest_positions(b);
+        REQUIRE(pressure.size() == rest.size());
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+          INFO("node at " << rest[i].x << " " << rest[i].y << " " << rest[i].z);
+          const bool between = std::abs(rest[i].z - 0.5) < 1e-9;
+          if (between)
+            CHECK(pressure[i] == Approx(-force).epsilon(0.03));
+          else
+            CHECK(std::abs(pressure[i]) < 0.03 * -force);
+        }
       }
     }
   }
