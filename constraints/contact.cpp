@@ -32,8 +32,7 @@ class ContactInstance final : public EffectInstance {
     const ContactFrame frame = pool_->frame(c.state.t, c.state.x);
     const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
     const bool rubs = pool_->memory() > 0;
-    const double* pull =
-        rubs ? c.state.extra.data() + c.system.first_stencil_memory(rows_->stencil_pool) : nullptr;
+    const auto memory = memory_of(c);
     Vec3 force{};
     double normal = 0, tangential = 0, area = 0, pressure = 0, gap = std::numeric_limits<double>::infinity();
     for (Index s = 0; s < pool_->stencils(); ++s) {
@@ -45,7 +44,7 @@ class ContactInstance final : public EffectInstance {
       const Distance d = distance_to(pool_->shape(), frame.to_own(pool_->point(s, c.state.x)));
       force -= lambda[at(s)] * (frame.A * d.normal);
       if (!rubs) continue;
-      const Vec3 f{pull[3 * s], pull[3 * s + 1], pull[3 * s + 2]};
+      const Vec3 f = pool_->kept_pull(s, memory);
       tangential += std::sqrt(dot(f, f));
       force -= frame.A * f;
     }
@@ -70,21 +69,26 @@ class ContactInstance final : public EffectInstance {
     f.area.assign(nodes, 0);
     const ContactFrame frame = pool_->frame(c.state.t, c.state.x);
     const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
-    const double* pull = pool_->memory() > 0
-                             ? c.state.extra.data() + c.system.first_stencil_memory(rows_->stencil_pool)
-                             : nullptr;
+    const auto memory = memory_of(c);
     for (Index s = 0; s < pool_->stencils(); ++s) {
       if (pool_->rides(s)) continue;  // a point of a rigid body is no node of a surface
       const std::size_t node = at(pool_->nodes()[s][0]);
       f.area[node] = rows_->area[at(s)];
       if (!(lambda[at(s)] < 0)) continue;
       f.normal[node] = -lambda[at(s)];
-      if (pull) f.tangential[node] = -1.0 * (frame.A * Vec3{pull[3 * s], pull[3 * s + 1], pull[3 * s + 2]});
+      f.tangential[node] = -1.0 * (frame.A * pool_->kept_pull(s, memory));
     }
     return true;
   }
 
  private:
+  std::span<const double> memory_of(const GaugeContext& c) const {
+    if (pool_->memory() == 0) return {};
+    return std::span<const double>(c.state.extra)
+        .subspan(at(c.system.first_stencil_memory(rows_->stencil_pool)),
+                 static_cast<std::size_t>(pool_->memory()));
+  }
+
   std::shared_ptr<const ContactPool> pool_;
   std::shared_ptr<const ContactRows> rows_;
   Index row_pool_;
@@ -99,10 +103,15 @@ class ContactEffect final : public EffectSource {
     if (auto r = check_obstacle(def_.obstacle); !r) return Error{who() + r.error()};
     for (const auto& [key, value, unit] : {std::tuple{"compliance", def_.compliance, "m/Pa"},
                                            {"friction", def_.friction, ""},
+                                           {"static_friction", def_.static_friction, ""},
                                            {"stick_stiffness", def_.stick_stiffness, "Pa/m"}}) {
       if (value >= 0 && std::isfinite(value)) continue;
       return Error{who() + key + " = " + number(value) + (*unit ? " " : "") + unit +
                    "; it must be zero or positive"};
+    }
+    if (def_.static_friction > 0 && def_.static_friction < def_.friction) {
+      return Error{who() + "static_friction = " + number(def_.static_friction) + " with friction = " +
+                   number(def_.friction) + "; it must not be the smaller one, or 0 for the same"};
     }
     if (!(def_.restitution >= 0 && def_.restitution <= 1)) {
       return Error{who() + "restitution = " + number(def_.restitution) +
@@ -133,8 +142,9 @@ class ContactEffect final : public EffectSource {
       points = rigid.value().points;
       shape = rigid.value().shape;
     }
-    auto pool = std::make_shared<ContactPool>(def_.name, shape, def_.friction, points,
-                                              def_.coupling == FrictionCoupling::coupled);
+    auto pool =
+        std::make_shared<ContactPool>(def_.name, shape, FrictionLaw(def_.friction, def_.static_friction),
+                                      points, def_.coupling == FrictionCoupling::coupled);
     auto rows = def_.restitution > 0
                     ? std::make_shared<BouncingRows>(def_.name, def_.resolve_time, pool, def_.restitution,
                                                      def_.restitution_speed)

@@ -57,7 +57,7 @@ void ContactPool::lag_derivatives(const StencilRequest& q, const LagSlots& slots
     std::fill_n(column, n, Vec3{});
     const Friction f = friction(q, now, s);
     if (q.lag.x.empty() || !(f.spring.limit > 0)) continue;
-    const Vec3 pull = f.spring.pull(), by_multiplier = -friction_ * f.spring.pull_by_limit();
+    const Vec3 pull = f.spring.pull(), by_multiplier = -f.mu * f.spring.pull_by_limit();
     const Mat3 curvature = distance_to(shape_, f.own).curvature;
     for (std::size_t a = 0; a < n; ++a) column[a] = f.weight[a] * by_multiplier;
     for (std::size_t b = 0; b < n; ++b) {

@@ -117,14 +117,23 @@ ContactPool::Frames ContactPool::frames(const StencilRequest& q) const {
   return f;
 }
 
+Vec3 ContactPool::kept_pull(Index s, std::span<const double> memory) const {
+  if (memory.empty()) return {};
+  const double* m = memory.data() + static_cast<std::size_t>(memory_per_point()) * at(s);
+  return {m[0], m[1], m[2]};
+}
+
+double ContactPool::coefficient(Index s, std::span<const double> memory) const {
+  const auto place = static_cast<std::size_t>(memory_per_point()) * at(s) + 3;
+  return friction_.coefficient(place < memory.size() ? memory.data() + place : nullptr);
+}
+
 // Limit, tangent plane and stretch of the spring that stands for sticking friction. Without an increment
 // there is no slip, and what is left is the pull that the last step ended with.
 ContactPool::Friction ContactPool::friction(const StencilRequest& q, const Frames& frames, Index s) const {
   Friction f;
   f.spring.stiffness = stick_[at(s)];
-  const bool remembers = !q.memory.empty();
-  const double* m = remembers ? q.memory.data() + 3 * at(s) : nullptr;
-  if (remembers) f.kept = {m[0], m[1], m[2]};
+  f.kept = kept_pull(s, q.memory);
   const Vec3 kept = frames.lag.A * f.kept;
   if (q.lag.x.empty()) {
     f.spring.limit = norm(kept);
@@ -132,7 +141,8 @@ ContactPool::Friction ContactPool::friction(const StencilRequest& q, const Frame
     return f;
   }
   const auto nodes = nodes_[s];
-  f.spring.limit = friction_ * std::max(0.0, -q.lag.function_multiplier[at(s)]);
+  f.mu = coefficient(s, q.memory);
+  f.spring.limit = f.mu * std::max(0.0, -q.lag.function_multiplier[at(s)]);
   f.own = frames.lag.to_own(point(s, q.lag.x));
   const Vec3 slope = distance_to(shape_, f.own).normal;
   Vec3& normal = f.spring.normal;
@@ -201,7 +211,7 @@ void ContactPool::add_curvature(const StencilRequest& q, const Distance& d, cons
 void ContactPool::evaluate(const StencilRequest& q, const StencilSlots& slots) const {
   const Frames now = frames(q);
   // Results are read without slip: nothing moves against the friction that is left.
-  const bool slips = friction_ > 0 && !q.lag.x.empty();
+  const bool slips = friction_.any() && !q.lag.x.empty();
   for (Index s = q.begin; s < q.end; ++s) {
     const std::size_t n = nodes_[s].size(), first = at(nodes_.offset[at(s)]);
     const Vec3 own = now.now.to_own(point(s, q.x));
@@ -209,7 +219,7 @@ void ContactPool::evaluate(const StencilRequest& q, const StencilSlots& slots) c
     slots.value[at(s)] = d.value - offset_[at(s)];
     slots.energy[at(s)] = 0;
     Friction f;
-    if (friction_ > 0) {
+    if (friction_.any()) {
       f = friction(q, now, s);
       slots.energy[at(s)] = f.spring.energy();
     }
@@ -240,8 +250,11 @@ void ContactPool::evaluate(const StencilRequest& q, const StencilSlots& slots) c
 void ContactPool::accept(const StencilRequest& q, std::span<double> memory) const {
   const Frames now = frames(q);
   for (Index s = 0; s < stencils(); ++s) {
-    const Vec3 f = now.now.inverse * friction(q, now, s).spring.pull();
-    for (int i = 0; i < 3; ++i) memory[3 * at(s) + static_cast<std::size_t>(i)] = f[i];
+    const FrictionSpring spring = friction(q, now, s).spring;
+    const Vec3 f = now.now.inverse * spring.pull();
+    double* m = memory.data() + static_cast<std::size_t>(memory_per_point()) * at(s);
+    for (int i = 0; i < 3; ++i) m[i] = f[i];
+    if (friction_.memory() > 0) m[3] = spring.slips() ? 1 : 0;
   }
 }
 

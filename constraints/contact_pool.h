@@ -22,8 +22,8 @@ namespace isochor {
 class ContactPool final : public StencilPool {
  public:
   // The pose of `shape` counts where there are no control points.
-  ContactPool(std::string name, Obstacle shape, double friction, std::optional<ControlPoints> points = {},
-              bool coupled = false)
+  ContactPool(std::string name, Obstacle shape, FrictionLaw friction,
+              std::optional<ControlPoints> points = {}, bool coupled = false)
       : name_(std::move(name)),
         shape_(std::move(shape)),
         friction_(friction),
@@ -36,16 +36,17 @@ class ContactPool final : public StencilPool {
   void finish() { finish_topology(); }
 
   std::string_view name() const override { return name_; }
-  bool has_energy() const override { return friction_ > 0; }
+  bool has_energy() const override { return friction_.any(); }
   int functions() const override { return 1; }
   bool sees_rigid_motion() const override { return !points_; }
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
 
-  bool has_lag() const override { return friction_ > 0; }
+  bool has_lag() const override { return friction_.any(); }
   bool couples() const override { return coupled_ && has_lag(); }
   // contact_coupling.cpp
   void lag_derivatives(const StencilRequest& request, const LagSlots& slots) const override;
-  int memory() const override { return friction_ > 0 ? 3 * stencils() : 0; }
+  // By point: the pull in the axes of the shape, then what the law keeps.
+  int memory() const override { return friction_.any() ? memory_per_point() * stencils() : 0; }
   void accept(const StencilRequest& request, std::span<double> memory) const override;
   bool has_barrier() const override { return shape_.shape != ObstacleShape::plane; }
   Index passing(const StencilIncrement& increment, std::span<const Vec3> x,
@@ -53,6 +54,8 @@ class ContactPool final : public StencilPool {
 
   // Whether the point of a stencil is on a rigid body and not a node.
   bool rides(Index s) const { return rider_[at(s)].has_value(); }
+  // The pull of friction that a step left, in the axes of the shape [N].
+  Vec3 kept_pull(Index s, std::span<const double> memory) const;
   // Position of the point of a stencil, and the frame of the shape, at positions x and time t.
   Vec3 point(Index s, std::span<const Vec3> x) const;
   ContactFrame frame(double t, std::span<const Vec3> x) const {
@@ -71,6 +74,7 @@ class ContactPool final : public StencilPool {
   };
   struct Friction {
     FrictionSpring spring;
+    double mu = 0;  // coefficient of this step
     std::array<double, kMost> weight{};
     // Of the lag: the point in the axes of the shape, where it touches there and, of a point on a rigid body,
     // in those of its own; the pull kept, in the axes of the shape; the slope of the distance in space; slip
@@ -84,6 +88,8 @@ class ContactPool final : public StencilPool {
   Frames frames(const StencilRequest& request) const;
   std::array<double, kMost> weights(Index s, const Vec3& own) const;
   Friction friction(const StencilRequest& request, const Frames& frames, Index s) const;
+  int memory_per_point() const { return 3 + friction_.memory(); }
+  double coefficient(Index s, std::span<const double> memory) const;
   FrictionRate friction_rate(const StencilRequest& request, const Frames& frames, Index s, const Friction& f,
                              const Mat3& curvature, std::size_t node, const Vec3& rate) const;
   void add_curvature(const StencilRequest& request, const Distance& d, const ContactFrame& frame,
@@ -91,7 +97,7 @@ class ContactPool final : public StencilPool {
 
   std::string name_;
   Obstacle shape_;
-  double friction_;
+  FrictionLaw friction_;
   bool coupled_;
   std::optional<ControlPoints> points_;
   std::vector<double> stick_, offset_;

@@ -60,7 +60,7 @@ Result<EdgeContact> EdgeContact::build(Builder& builder, const SurfaceContactDef
   setup->name = def.name + ", edges";
   setup->edges = edges;
   setup->offset = def.thickness;
-  setup->friction = def.friction;
+  setup->friction = {def.friction, def.static_friction};
   setup->open = builder.length();
   auto rows = std::make_shared<ContactRows>(setup->name, def.resolve_time);
   for (Index e = 0; e < edges->count(); ++e) {

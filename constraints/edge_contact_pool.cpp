@@ -54,10 +54,15 @@ Mat3 EdgeContactPool::axes(Index s, std::span<const Vec3> x) const {
 }
 
 Vec3 EdgeContactPool::kept_pull(Index s, std::span<const double> memory, std::span<const Vec3> x) const {
-  if (memory.empty() || setup_->friction == 0) return {};
+  if (memory.empty() || !setup_->friction.any()) return {};
   const double* m = memory.data() + static_cast<std::size_t>(memory_per_edge()) * at(s);
   if (m[1] == 0 && m[2] == 0 && m[3] == 0) return {};
   return axes(s, x) * Vec3{m[1], m[2], m[3]};
+}
+
+double EdgeContactPool::coefficient(Index s, std::span<const double> memory) const {
+  const auto place = static_cast<std::size_t>(memory_per_edge()) * at(s) + 4;
+  return setup_->friction.coefficient(place < memory.size() ? memory.data() + place : nullptr);
 }
 
 // As in SurfaceContactPool: without an increment what is left is the pull that the last step ended with.
@@ -73,7 +78,7 @@ EdgeContactPool::Friction EdgeContactPool::friction(const StencilRequest& q, Ind
   f.gap = gap(s, q.lag.x);
   // Edges that do not meet have no normal force, wherever their places are.
   if (f.gap.weight == 0) return f;
-  f.spring.limit = setup_->friction * f.gap.weight * std::max(0.0, -q.lag.function_multiplier[at(s)]);
+  f.spring.limit = coefficient(s, q.memory) * f.gap.weight * std::max(0.0, -q.lag.function_multiplier[at(s)]);
   f.spring.normal = f.gap.normal;
   const auto nodes = nodes_[s];
   Vec3 slip = (1 / f.spring.stiffness) * kept_pull(s, q.memory, q.lag.x);
@@ -84,7 +89,7 @@ EdgeContactPool::Friction EdgeContactPool::friction(const StencilRequest& q, Ind
 }
 
 void EdgeContactPool::evaluate(const StencilRequest& q, const StencilSlots& slots) const {
-  const bool slips = setup_->friction > 0 && !q.lag.x.empty();
+  const bool slips = setup_->friction.any() && !q.lag.x.empty();
   for (Index s = q.begin; s < q.end; ++s) {
     slots.energy[at(s)] = 0;
     if (!has_partner(s)) {
@@ -95,7 +100,7 @@ void EdgeContactPool::evaluate(const StencilRequest& q, const StencilSlots& slot
     const EdgeGap here = edge_gap(x, setup_->offset);
     slots.value[at(s)] = here.value;
     Friction f;
-    if (setup_->friction > 0) {
+    if (setup_->friction.any()) {
       f = friction(q, s);
       slots.energy[at(s)] = f.spring.energy();
     }
@@ -134,11 +139,14 @@ void EdgeContactPool::accept(const StencilRequest& q, std::span<double> memory) 
     m[0] = partner_[at(s)] + 1;
     if (per == 1) continue;
     Vec3 own{};
+    bool slips = false;
     if (has_partner(s)) {
       const Friction f = friction(q, s);
       if (f.spring.limit > 0) own = transposed_times(axes(s, q.x), f.spring.pull());
+      slips = f.spring.slips();
     }
     for (int i = 0; i < 3; ++i) m[1 + i] = own[i];
+    if (per > 4) m[4] = slips ? 1 : 0;
   }
 }
 

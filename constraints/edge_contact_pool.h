@@ -17,20 +17,20 @@ class EdgeContactPool final : public StencilPool {
   struct Setup {
     std::string name;
     std::shared_ptr<const SkinEdges> edges;
-    double offset = 0;          // [m]
-    double friction = 0;        // [-]
+    double offset = 0;  // [m]
+    FrictionLaw friction;
     std::vector<double> stick;  // by edge: stiffness of friction that sticks [N/m]
     double open = 1;            // gap of edges without a partner [m]
   };
   EdgeContactPool(std::shared_ptr<const Setup> setup, std::vector<Index> partner);
 
   std::string_view name() const override { return setup_->name; }
-  bool has_energy() const override { return setup_->friction > 0; }
+  bool has_energy() const override { return setup_->friction.any(); }
   int functions() const override { return 1; }
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
 
-  bool has_lag() const override { return setup_->friction > 0; }
-  // By edge: one more than the partner, then the pull in the axes of the edge.
+  bool has_lag() const override { return setup_->friction.any(); }
+  // By edge: one more than the partner, then the pull in the axes of the edge and what the law keeps.
   int memory() const override { return memory_per_edge() * stencils(); }
   void accept(const StencilRequest& request, std::span<double> memory) const override;
   bool follows() const override { return true; }
@@ -50,7 +50,8 @@ class EdgeContactPool final : public StencilPool {
     FrictionSpring spring;
     EdgeGap gap;
   };
-  int memory_per_edge() const { return setup_->friction > 0 ? 4 : 1; }
+  double coefficient(Index s, std::span<const double> memory) const;
+  int memory_per_edge() const { return setup_->friction.any() ? 4 + setup_->friction.memory() : 1; }
   std::array<Vec3, kPairNodes> places(Index s, std::span<const Vec3> x) const;
   Friction friction(const StencilRequest& request, Index s) const;
   Mat3 axes(Index s, std::span<const Vec3> x) const;

@@ -1,11 +1,29 @@
 // Friction as an energy of the slip, with the normal force and the tangent plane held.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base.h"
 
 namespace isochor {
+
+// Coulomb's coefficients [-]. Where breaking away takes more than sliding, a point has for a whole step the
+// one that its last step ended with: the kinetic one when it slipped, else, and where it did not touch, the
+// static one.
+struct FrictionLaw {
+  double kinetic = 0, breakaway = 0;  // breakaway >= kinetic
+  FrictionLaw() = default;
+  FrictionLaw(double mu) : kinetic(mu), breakaway(mu) {}
+  FrictionLaw(double mu, double static_mu) : kinetic(mu), breakaway(std::max(mu, static_mu)) {}
+
+  bool any() const { return breakaway > 0; }
+  // Numbers that a point keeps between steps: whether it slipped.
+  int memory() const { return breakaway > kinetic ? 1 : 0; }
+  double coefficient(const double* kept) const {
+    return memory() > 0 && kept != nullptr && *kept != 0 ? kinetic : breakaway;
+  }
+};
 
 // k/2 |z|^2 where k |z| <= mu N, else mu N |z| - (mu N)^2 / (2 k): convex and once differentiable in z.
 struct FrictionSpring {
@@ -14,6 +32,7 @@ struct FrictionSpring {
   Vec3 normal{}, z{};    // unit normal; slip, with what the last step left of the pull over k, across it [m]
 
   double stretch() const { return std::sqrt(dot(z, z)); }
+  bool slips() const { return limit > 0 && !sticks(); }
   bool sticks() const { return stiffness * stretch() <= limit; }
   double energy() const {
     const double s = stretch();

@@ -160,9 +160,14 @@ class SurfaceContactEffect final : public EffectSource {
   Result<void> check() const override {
     for (const auto& [key, value, unit] : {std::tuple{"thickness", def_.thickness, " m"},
                                            {"friction", def_.friction, ""},
+                                           {"static_friction", def_.static_friction, ""},
                                            {"stick_stiffness", def_.stick_stiffness, " Pa/m"}}) {
       if (value >= 0 && std::isfinite(value)) continue;
       return Error{who() + key + " = " + number(value) + unit + "; it must be zero or positive"};
+    }
+    if (def_.static_friction > 0 && def_.static_friction < def_.friction) {
+      return Error{who() + "static_friction = " + number(def_.static_friction) + " with friction = " +
+                   number(def_.friction) + "; it must not be the smaller one, or 0 for the same"};
     }
     if (def_.compliance && !(*def_.compliance > 0 && std::isfinite(*def_.compliance))) {
       return Error{who() + "compliance = " + number(*def_.compliance) +
@@ -183,7 +188,7 @@ class SurfaceContactEffect final : public EffectSource {
     setup->name = def_.name;
     setup->skin = std::make_shared<Skin>(sides.value(), builder.rest());
     setup->offset = def_.thickness;
-    setup->friction = def_.friction;
+    setup->friction = {def_.friction, def_.static_friction};
     setup->coupled = def_.coupling == FrictionCoupling::coupled;
     setup->open = builder.length();
     const std::array<double, 2> mu{stiffest(builder.body(def_.body)),

@@ -70,10 +70,15 @@ Mat3 SurfaceContactPool::axes(Index s, std::span<const Vec3> x) const {
 }
 
 Vec3 SurfaceContactPool::kept_pull(Index s, std::span<const double> memory, std::span<const Vec3> x) const {
-  if (memory.empty() || setup_->friction == 0) return {};
+  if (memory.empty() || !setup_->friction.any()) return {};
   const double* m = memory.data() + static_cast<std::size_t>(memory_per_point()) * at(s);
   if (m[1] == 0 && m[2] == 0 && m[3] == 0) return {};
   return axes(s, x) * Vec3{m[1], m[2], m[3]};
+}
+
+double SurfaceContactPool::coefficient(Index s, std::span<const double> memory) const {
+  const auto place = static_cast<std::size_t>(memory_per_point()) * at(s) + 4;
+  return setup_->friction.coefficient(place < memory.size() ? memory.data() + place : nullptr);
 }
 
 // As in ContactPool: without an increment what is left is the pull that the last step ended with.
@@ -88,7 +93,8 @@ SurfaceContactPool::Friction SurfaceContactPool::friction(const StencilRequest& 
   }
   const Vec3 kept = kept_pull(s, q.memory, q.lag.x);
   f.near = nearest(s, q.lag.x);
-  f.spring.limit = setup_->friction * std::max(0.0, -q.lag.function_multiplier[at(s)]);
+  f.mu = coefficient(s, q.memory);
+  f.spring.limit = f.mu * std::max(0.0, -q.lag.function_multiplier[at(s)]);
   f.spring.normal = f.near.normal;
   const auto nodes = nodes_[s];
   Vec3 slip = (1 / f.spring.stiffness) * kept;
@@ -100,7 +106,7 @@ SurfaceContactPool::Friction SurfaceContactPool::friction(const StencilRequest& 
 }
 
 void SurfaceContactPool::evaluate(const StencilRequest& q, const StencilSlots& slots) const {
-  const bool slips = setup_->friction > 0 && !q.lag.x.empty();
+  const bool slips = setup_->friction.any() && !q.lag.x.empty();
   for (Index s = q.begin; s < q.end; ++s) {
     slots.energy[at(s)] = 0;
     if (!close(s)) {
@@ -113,7 +119,7 @@ void SurfaceContactPool::evaluate(const StencilRequest& q, const StencilSlots& s
     const bool exists = std::isfinite(near.distance);
     slots.value[at(s)] = exists ? near.distance - setup_->offset : setup_->open;
     Friction f;
-    if (setup_->friction > 0) {
+    if (setup_->friction.any()) {
       f = friction(q, s);
       slots.energy[at(s)] = f.spring.energy();
     }
@@ -151,8 +157,10 @@ void SurfaceContactPool::accept(const StencilRequest& q, std::span<double> memor
     double* m = memory.data() + per * at(s);
     m[0] = center_[at(s)] + 1;
     if (per == 1) continue;
-    const Vec3 own = close(s) ? transposed_times(axes(s, q.x), friction(q, s).spring.pull()) : Vec3{};
+    const FrictionSpring spring = close(s) ? friction(q, s).spring : FrictionSpring{};
+    const Vec3 own = close(s) ? transposed_times(axes(s, q.x), spring.pull()) : Vec3{};
     for (int i = 0; i < 3; ++i) m[1 + i] = own[i];
+    if (per > 4) m[4] = spring.slips() ? 1 : 0;
   }
 }
 

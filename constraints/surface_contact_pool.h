@@ -19,8 +19,8 @@ class SurfaceContactPool final : public StencilPool {
   struct Setup {
     std::string name;
     std::shared_ptr<const Skin> skin;
-    double offset = 0;          // [m]
-    double friction = 0;        // [-]
+    double offset = 0;  // [m]
+    FrictionLaw friction;
     std::vector<double> stick;  // by point: stiffness of friction that sticks [N/m]
     double open = 1;            // gap of points that nothing is close to [m]
     bool coupled = false;
@@ -29,15 +29,15 @@ class SurfaceContactPool final : public StencilPool {
   SurfaceContactPool(std::shared_ptr<const Setup> setup, std::vector<Index> center);
 
   std::string_view name() const override { return setup_->name; }
-  bool has_energy() const override { return setup_->friction > 0; }
+  bool has_energy() const override { return setup_->friction.any(); }
   int functions() const override { return 1; }
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
 
-  bool has_lag() const override { return setup_->friction > 0; }
+  bool has_lag() const override { return setup_->friction.any(); }
   bool couples() const override { return setup_->coupled && has_lag(); }
   // surface_coupling.cpp
   void lag_derivatives(const StencilRequest& request, const LagSlots& slots) const override;
-  // By point: one more than the center, then the pull in the axes of its triangle.
+  // By point: one more than the center, then the pull in the axes of its triangle and what the law keeps.
   int memory() const override { return memory_per_point() * stencils(); }
   void accept(const StencilRequest& request, std::span<double> memory) const override;
   bool follows() const override { return true; }
@@ -55,6 +55,7 @@ class SurfaceContactPool final : public StencilPool {
  private:
   struct Friction {
     FrictionSpring spring;
+    double mu = 0;  // coefficient of this step
     PatchPoint near;
     Vec3 whole{};  // slip and stretch before they are projected on the tangent plane
   };
@@ -62,7 +63,8 @@ class SurfaceContactPool final : public StencilPool {
   std::size_t gap_nodes(Index s) const { return setup_->skin->points()[at(s)].nodes + patch_[at(s)].nodes; }
   Vec3 kept_pull_rate(Index s, std::span<const double> memory, std::span<const Vec3> x, Index node,
                       const Vec3& rate) const;
-  int memory_per_point() const { return setup_->friction > 0 ? 4 : 1; }
+  double coefficient(Index s, std::span<const double> memory) const;
+  int memory_per_point() const { return setup_->friction.any() ? 4 + setup_->friction.memory() : 1; }
   Friction friction(const StencilRequest& request, Index s) const;
   Mat3 axes(Index s, std::span<const Vec3> x) const;
   // The nearest place of a patch around a triangle.

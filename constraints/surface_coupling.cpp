@@ -51,7 +51,7 @@ void SurfaceContactPool::lag_derivatives(const StencilRequest& q, const LagSlots
     if (!close(s) || q.lag.x.empty()) continue;
     const Friction f = friction(q, s);
     if (!(f.spring.limit > 0) || !std::isfinite(f.near.distance)) continue;
-    const Vec3 pull = f.spring.pull(), by_multiplier = -setup_->friction * f.spring.pull_by_limit();
+    const Vec3 pull = f.spring.pull(), by_multiplier = -f.mu * f.spring.pull_by_limit();
     for (std::size_t a = 0; a < n; ++a) column[a] = share(s, a, f.near) * by_multiplier;
     const std::size_t first = setup_->skin->points()[at(s)].nodes, of_gap = gap_nodes(s);
     // What the nearest place moves by along its coordinates slides over.

@@ -80,6 +80,9 @@ struct ContactDef {
   std::string rigid, against;
   double compliance = 0;  // [m/Pa]: depth over pressure of a soft layer; 0: hard
   double friction = 0;    // coefficient of Coulomb friction [-]
+  // Coefficient that it takes to break away [-], not below `friction`; 0: the same. A point that slipped in
+  // one step has `friction` in the next, one that stuck or did not touch has this.
+  double static_friction = 0;
   // Of friction below its limit, shear stress over slip [Pa/m]: the slip that remains when it sticks is
   // elastic. 0: a hundred times the shear modulus over the size of a face.
   double stick_stiffness = 0;
@@ -108,6 +111,7 @@ struct SurfaceContactDef {
   std::optional<double> compliance;
   double thickness = 0;        // [m]: distance that the surfaces keep
   double friction = 0;         // as in ContactDef
+  double static_friction = 0;  // as in ContactDef
   double stick_stiffness = 0;  // as in ContactDef
   FrictionCoupling coupling = FrictionCoupling::lagged;
   InitialOverlap initial_overlap = InitialOverlap::report;

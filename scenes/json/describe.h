@@ -263,6 +263,7 @@ void describe(Io& io, ContactDef& c) {
   io.optional_object("obstacle", c.obstacle, c.against.empty());
   io.number("compliance", c.compliance, 0.0);
   io.number("friction", c.friction, 0.0);
+  io.number("static_friction", c.static_friction, 0.0);
   io.number("stick_stiffness", c.stick_stiffness, 0.0);
   io.word("coupling", c.coupling, FrictionCoupling::lagged);
   io.number("restitution", c.restitution, 0.0);
@@ -281,6 +282,7 @@ void describe(Io& io, SurfaceContactDef& c) {
   io.optional_number("compliance", c.compliance);
   io.number("thickness", c.thickness, 0.0);
   io.number("friction", c.friction, 0.0);
+  io.number("static_friction", c.static_friction, 0.0);
   io.number("stick_stiffness", c.stick_stiffness, 0.0);
   io.word("coupling", c.coupling, FrictionCoupling::lagged);
   io.word("initial_overlap", c.initial_overlap, InitialOverlap::report);

@@ -36,7 +36,7 @@ struct Incline {
 };
 
 // A flat block on a slope, at rest when gravity begins.
-Incline incline(double degrees, double friction, bool statics = false) {
+Incline incline(double degrees, double friction, bool statics = false, double static_friction = 0) {
   const double c = std::cos(degrees * kDegree), s = std::sin(degrees * kDegree);
   WorldOptions options = statics ? test::static_options() : test::dynamic_options();
   options.gravity = {0, 0, -9.81};
@@ -55,6 +55,7 @@ Incline incline(double degrees, double friction, bool statics = false) {
   contact_def.surfaces = {"z0"};
   contact_def.obstacle.axis = {s, 0, c};
   contact_def.friction = friction;
+  contact_def.static_friction = static_friction;
   test::value(i.world.add(contact(contact_def)));
   return i;
 }
@@ -165,6 +166,38 @@ TEST_CASE("a sliding block accelerates as Coulomb says") {
     CHECK(normal == Approx(0.2 * 0.1 * 0.04 * 1000 * 9.81 * std::cos(slope)).epsilon(0.01));
     CHECK(gauge_of(i.world, "friction_force") == Approx(friction * normal).epsilon(1e-6).margin(1e-12));
   }
+}
+
+TEST_CASE("what breaks away at the static coefficient slides with the kinetic one") {
+  const double kinetic = 0.3, breakaway = 0.5, limit = std::atan(breakaway) / kDegree, h = 0.005;
+  const auto acceleration = [&](Incline& i) {
+    double velocity[2];
+    for (double& v : velocity) {
+      double before = 0;
+      for (int s = 0; s < 40; ++s) {
+        before = i.along();
+        test::must_advance(i.world, h);
+      }
+      v = (i.along() - before) / h;
+    }
+    return (velocity[1] - velocity[0]) / (40 * h);
+  };
+  const auto sliding = [&](double degrees) {
+    return 9.81 * (std::sin(degrees * kDegree) - kinetic * std::cos(degrees * kDegree));
+  };
+  Incline above = incline(limit + 0.5, kinetic, false, breakaway);
+  CHECK(acceleration(above) == Approx(sliding(limit + 0.5)).epsilon(0.01));
+  // Half a degree below it holds, though the kinetic coefficient alone would not.
+  Incline below = incline(limit - 0.5, kinetic, false, breakaway);
+  CHECK(std::abs(acceleration(below)) < 1e-6);
+  CHECK(below.along() < 1e-3);
+  // Unless it slides already, also after a checkpoint.
+  std::vector<Vec3> v(below.world.positions(below.body).size(), below.down);
+  test::value(below.world.set_velocities(below.body, v));
+  CHECK(acceleration(below) == Approx(sliding(limit - 0.5)).epsilon(0.01));
+  Incline again = incline(limit - 0.5, kinetic, false, breakaway);
+  REQUIRE(again.world.load(below.world.save()));
+  CHECK(acceleration(again) == Approx(sliding(limit - 0.5)).epsilon(0.01));
 }
 
 TEST_CASE("very high friction holds a block on a steep slope") {
