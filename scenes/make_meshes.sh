@@ -90,6 +90,7 @@ thick_sphere_fine           thick_sphere      1  h=0.0800
 thick_sphere_tet10_fine     thick_sphere      2  h=0.1300
 torsion_cylinder_fine       torsion_cylinder  1  h=0.0900
 torsion_cylinder_tet10_fine torsion_cylinder  2  h=0.1400
+ball_middle                 ball              1  h=0.0054
 ball_fine                   ball              1  h=0.0033
 '
 

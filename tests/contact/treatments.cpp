@@ -69,3 +69,25 @@ TEST_CASE("hard contact stays in the saddle point") {
   REQUIRE(b.world.compile());
   CHECK(a.world.size().matrix_size == b.world.size().matrix_size);
 }
+
+TEST_CASE("projected dual steps end where the active set does") {
+  for (const double compliance : {0.0, 1e-6}) {
+    Drop active = drop(Method::saddle_point, compliance, 0),
+         dual = drop(Method::augmented_ascent, compliance, 0);
+    bool touched = false;
+    for (int k = 0; k < 16; ++k) {
+      REQUIRE(active.world.step(0.01).status == StepStatus::converged);
+      const StepReport report = dual.world.step(0.01);
+      INFO("compliance " << compliance << ", step " << k << ": " << report.reason);
+      REQUIRE(report.status == StepStatus::converged);
+      CHECK(report.row_residual <= 1e-10);
+      const auto a = active.world.positions(active.body), b = dual.world.positions(dual.body);
+      double away = 0;
+      for (std::size_t i = 0; i < a.size(); ++i)
+        away = std::max(away, std::sqrt(dot(a[i] - b[i], a[i] - b[i])));
+      CHECK(away < 1e-8 * 0.1);
+      touched = touched || lowest(active.world, active.body) < 1e-9;
+    }
+    CHECK(touched);
+  }
+}
