@@ -154,8 +154,7 @@ StudyResult Runner::run() {
       return result_;
     }
   }
-  result_.status =
-      result_.cells.size() == chosen_.size() ? StudyStatus::complete : StudyStatus::interrupted;
+  result_.status = result_.cells.size() == chosen_.size() ? StudyStatus::complete : StudyStatus::interrupted;
   result_.seconds = now() - start_;
   for (auto& [id, cell] : earlier_) {
     if (!cell.good()) ++result_.not_good;
