@@ -34,6 +34,7 @@ void print_explanation(const Explanation& explanation, const RunResult& result);
 struct StudyArguments {
   std::string study;
   std::string folder;  // empty: out/study/NAME, with _quick
+  std::string only;    // text in the names of the cells to measure; empty: all
   bool quick = false, fresh = false, list = false, quiet = false;
   bool check = false, update = false;
   int threads = 0;

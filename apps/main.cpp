@@ -42,6 +42,7 @@ void add_study(CLI::App& top, app::StudyArguments& a) {
   c->add_flag("--list", a.list, "List the studies");
   c->add_flag("--quick", a.quick, "A smaller sweep, one repeat");
   c->add_option("--out", a.folder, "Folder of the outputs; default out/study/NAME")->type_name("DIR");
+  c->add_option("--only", a.only, "Measure only cells with this text in their names")->type_name("TEXT");
   c->add_flag("--fresh", a.fresh, "Measure all again; otherwise what this build has measured is kept");
   c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
   c->add_flag("--check", a.check, "Hold guarded cells of all studies against the committed expectations");

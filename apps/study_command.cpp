@@ -96,6 +96,7 @@ int study(const StudyArguments& a) {
   options.folder = a.folder.empty() ? "out/study/" + a.study + (a.quick ? "_quick" : "") : a.folder;
   options.quick = a.quick;
   options.fresh = a.fresh;
+  options.only = a.only;
   options.threads = a.threads;
   options.stop = [] { return g_signals.load() > 0; };
   if (!a.quiet) options.on_cell = print_cell;

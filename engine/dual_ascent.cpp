@@ -10,7 +10,11 @@ DualAscent::DualAscent(std::shared_ptr<const System> system, const Parallel& par
     : SaddlePoint(std::move(system), parallel, std::move(solver)), ascent_(options) {
   const std::size_t n = at(system_->nodes()), m = at(system_->rows());
   for (auto* v : {&effective_, &direction_, &image_, &weights_}) v->assign(m, 0);
-  for (auto* v : {&dx_, &rhs_, &x_trial_, &node_work_, &reaction_}) v->resize(n);
+  if (ascent_.conjugate) {
+    before_.assign(m, 0);
+    image_before_.assign(m, 0);
+  }
+  for (auto* v : {&dx_, &rhs_, &x_trial_, &node_work_, &reaction_, &x_before_, &dx_before_}) v->resize(n);
 }
 
 // Evaluates at x with the multipliers lambda + W theta(x), projected: those of the augmented Lagrangian's
@@ -53,6 +57,12 @@ double DualAscent::lagrangian(const SaddleProblem& p, std::span<const Vec3> x,
 bool DualAscent::minimize(const SaddleProblem& p, const SaddleOptions& options, double tolerance,
                           std::span<Vec3> x, std::span<const double> lambda, SaddleReport& report) {
   const System& s = *system_;
+  constexpr int most_failed_ventures = 3, most_returns = 4;
+  struct {
+    bool under_way = false;
+    int failed = 0, returns = 0;
+    double start = 0, slope = 0, longest = 0, enough = 0, excess = 0;
+  } venture;
   double before = 0;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     {
@@ -103,21 +113,56 @@ bool DualAscent::minimize(const SaddleProblem& p, const SaddleOptions& options, 
       dx_[i] += gap_[i];
       longest = std::max(longest, norm(dx_[i]));
     }
-    const double start = lagrangian(p, x, lambda);
+    double start = lagrangian(p, x, lambda);
     const double noise = 1e-12 * (potential_magnitude(p, x) + std::abs(start));
     double tau = longest > 100 * s.length() ? 100 * s.length() / longest : 1;
     bool accepted = false;
     const Stopwatch watch(seconds_.line_search);
-    for (int trial = 0; trial < 40 && tau > 1e-10; ++trial, tau *= 0.5) {
+    const auto value_at = [&](double step) {
       ++report.trials;
-      for (std::size_t i = 0; i < x.size(); ++i) x_trial_[i] = x[i] + tau * dx_[i];
+      for (std::size_t i = 0; i < x.size(); ++i) x_trial_[i] = x[i] + step * dx_[i];
       evaluate(p, Want::gradient, x_trial_, lambda);
-      const double value = lagrangian(p, x_trial_, lambda);
+      return lagrangian(p, x_trial_, lambda);
+    };
+    if (venture.under_way) {
+      // The step after one that was taken although its end was higher: held against where that one began.
+      const double value = value_at(tau);
+      const double left = value - venture.enough;
+      if (left <= 0 || (left < 0.2 * venture.excess && ++venture.returns < most_returns)) {
+        venture.under_way = left > 0;
+        venture.excess = left;
+        if (left <= 0) venture.failed = std::max(0, venture.failed - 1);
+        std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
+        continue;
+      }
+      // Back to there, to backtrack along its direction.
+      venture.under_way = false;
+      ++venture.failed;
+      std::copy(x_before_.begin(), x_before_.end(), x.begin());
+      std::copy(dx_before_.begin(), dx_before_.end(), dx_.begin());
+      start = venture.start;
+      slope = venture.slope;
+      longest = venture.longest;
+      tau = 0.5;
+    }
+    for (int trial = 0; trial < 40 && tau > 1e-10; ++trial, tau *= 0.5) {
+      const double value = value_at(tau);
       // Given coordinates on their way pump work in; then a finite energy and elements that stay whole do.
       accepted =
           std::isfinite(value) && (has_gap_ || value <= start + 1e-4 * tau * slope ||
                                    (std::abs(tau * slope) < 10 * noise && value <= start + 10 * noise));
       if (accepted) break;
+      // Where backtracking would creep: what should turn was stretched on the tangent, stiff parts charge for
+      // that, and the next step takes it back (Newton's ventures).
+      const double curvature = value - start - slope;
+      if (tau == 1 && std::isfinite(value) && -0.5 * slope < 0.1 * curvature && !mended_ && !reuse &&
+          venture.failed < most_failed_ventures) {
+        venture = {true, venture.failed, 0, start, slope, longest, start + 1e-4 * slope, value - start};
+        std::copy(x.begin(), x.end(), x_before_.begin());
+        std::copy(dx_.begin(), dx_.end(), dx_before_.begin());
+        accepted = true;
+        break;
+      }
     }
     if (!accepted) {
       report.status = SaddleStatus::line_search_failed;
@@ -136,6 +181,29 @@ bool DualAscent::minimize(const SaddleProblem& p, const SaddleOptions& options, 
   return false;
 }
 
+// Takes from the direction its part along the last one, unless what is left does not climb any more (the
+// gradient is in theta_): then the last one is forgotten.
+void DualAscent::conjugate() {
+  if (has_before_) {
+    double across = 0, along = 0;
+    for (std::size_t r = 0; r < direction_.size(); ++r) {
+      across += direction_[r] * image_before_[r];
+      along += before_[r] * image_before_[r];
+    }
+    const double part = along > 0 ? across / along : 0;
+    double up = 0;
+    for (std::size_t r = 0; r < direction_.size(); ++r)
+      up += theta_[r] * (direction_[r] - (theta_[r] != 0 ? part * before_[r] : 0));
+    if (up > 0) {
+      // Rows held at a bound have no gradient and stay where they are.
+      for (std::size_t r = 0; r < direction_.size(); ++r)
+        if (theta_[r] != 0) direction_[r] -= part * before_[r];
+    }
+  }
+  std::copy(direction_.begin(), direction_.end(), before_.begin());
+  has_before_ = true;
+}
+
 // One step of the multipliers along the dual gradient T^T theta, of the length that maximizes the dual
 // function's quadratic model (one solve with the factors at hand).
 bool DualAscent::climb(std::span<double> lambda, SaddleReport& report) {
@@ -149,7 +217,9 @@ bool DualAscent::climb(std::span<double> lambda, SaddleReport& report) {
   if (ascent_.scaled) {
     for (std::size_t r = 0; r < direction_.size(); ++r) direction_[r] /= kkt_.dual_preconditioner()[r];
   }
+  if (ascent_.conjugate) conjugate();
   if (!kkt_.apply_dual(direction_, image_, seconds_)) return false;
+  if (ascent_.conjugate) std::copy(image_.begin(), image_.end(), image_before_.begin());
   double curvature = 0;
   for (std::size_t r = 0; r < direction_.size(); ++r) {
     up += direction_[r] * theta_[r];
@@ -176,6 +246,7 @@ SaddleReport DualAscent::solve(const SaddleProblem& p, const SaddleOptions& opti
   }
   begin(p);
   factored_ = false;
+  has_before_ = false;
   definiteness_ = options.definiteness;
   clamp(lambda);
   const System& s = *system_;

@@ -16,6 +16,9 @@ struct DualAscentOptions {
   // Climb along theta in units of the row metric. False: along theta as it is, which supposes rows of one
   // kind on an even mesh.
   bool scaled = true;
+  // Climb along conjugate directions instead of the gradient: each is freed of the one before it, as the last
+  // dual operator sees them.
+  bool conjugate = false;
 };
 
 class DualAscent : public SaddlePoint {
@@ -33,11 +36,15 @@ class DualAscent : public SaddlePoint {
   bool minimize(const SaddleProblem& p, const SaddleOptions& options, double tolerance, std::span<Vec3> x,
                 std::span<const double> lambda, SaddleReport& report);
   bool climb(std::span<double> lambda, SaddleReport& report);
+  void conjugate();
 
   DualAscentOptions ascent_;
-  bool factored_ = false;  // in this solve
+  bool factored_ = false;    // in this solve
+  bool has_before_ = false;  // a direction to be conjugate to, in this solve
   std::vector<double> effective_, direction_, image_, weights_;
+  std::vector<double> before_, image_before_;  // conjugate: the last direction and its image
   std::vector<Vec3> dx_, rhs_, x_trial_, node_work_, reaction_;
+  std::vector<Vec3> x_before_, dx_before_;  // of a venture
 };
 
 }  // namespace isochor

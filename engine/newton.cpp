@@ -1,6 +1,7 @@
 #include "engine/newton.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace isochor {
@@ -355,7 +356,23 @@ bool Newton::search(const SaddleProblem& p, std::span<Vec3> x, std::span<double>
   keep_multipliers(p, x, lambda);
   report.step = tau * longest;
   full_step_ = tau == 1;
+  resting_ = resting_ || (has_gap_ && tau < 1);
+  creeping_ = tau < 1e-3 ? creeping_ + 1 : 0;
   return true;
+}
+
+// A prescribed motion that a step could not make whole rests until the body has come after it: what is left
+// of the way is asked for again from a state near balance. Otherwise a long way ends at elements about to
+// turn over, where no step leads on.
+void Newton::rest_gap(const SaddleReport& report) {
+  if (!resting_ || !has_gap_) return;
+  constexpr double near = 1e-2;
+  if (report.force_residual <= near && report.row_residual <= near) {
+    resting_ = false;
+    return;
+  }
+  has_gap_ = false;
+  std::fill(gap_.begin(), gap_.end(), Vec3{});
 }
 
 // Takes over the multipliers of the trial point, projected on their bounds. Those that the projection moved
@@ -405,6 +422,9 @@ void Newton::begin_search(const SaddleOptions& options) {
   venture_.under_way = false;
   venture_.failed = 0;
   venture_.length = 1;
+  resting_ = false;
+  creeping_ = 0;
+  full_steps_ = 0;
   definiteness_ = options.definiteness;
   gamma_ = 0.1;
 }
@@ -416,6 +436,13 @@ bool Newton::left_all_bounds(std::span<const Vec3> x) const {
     const Vec3 d = xi - origin;
     return dot(d, d) <= 1e8 * s.length() * s.length();
   });
+}
+
+// At the limits; or beyond those of patience while fewer than half of the last eight steps were whole.
+bool Newton::out_of_patience(const SaddleOptions& o, int iteration, int factorizations) const {
+  if (iteration >= o.max_iterations || factorizations >= o.max_factorizations) return true;
+  if (iteration < o.patient_iterations && factorizations < o.patient_factorizations) return false;
+  return std::popcount(full_steps_) < 4;
 }
 
 SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
@@ -439,10 +466,10 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     }
     if (iteration == 0 && !std::isfinite(assembly_.energy())) return fail(SaddleStatus::not_finite);
     position_gap(p, x);
+    rest_gap(report);
     if (cancelled && cancelled()) return fail(SaddleStatus::cancelled);
-    if (iteration >= options.max_iterations || report.factorizations >= options.max_factorizations) {
+    if (out_of_patience(options, iteration, report.factorizations))
       return fail(SaddleStatus::iteration_limit);
-    }
     // A state that is already in balance stays to the last bit.
     if ((iteration == 0 || s.has_lag()) && balanced(p, options, x, lambda, report)) return report;
     if (s.has_bounds()) choose_clamped(lambda, iteration == 0);
@@ -459,6 +486,9 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     ++report.iterations;
     if (!(venture_.under_way && settle_venture(p, x, lambda, report)) && !search(p, x, lambda, report))
       return fail(SaddleStatus::line_search_failed);
+    full_steps_ = static_cast<std::uint8_t>(full_steps_ << 1 | (full_step_ ? 1 : 0));
+    // Steps that short lead nowhere; the work is better spent on a shorter increment.
+    if (creeping_ == 3) return fail(SaddleStatus::line_search_failed);
     const bool done = balanced(p, options, x, lambda, report);
     if (progress) progress(report.iterations, report.force_residual, report.row_residual);
     // With a lag, balance counts only once it is renewed.

@@ -52,11 +52,16 @@ class Newton : public SaddlePoint {
   double merit_slope(std::span<const double> lambda);
   double try_step(const SaddleProblem& p, double tau, std::span<const Vec3> x, std::span<const double> lambda,
                   SaddleReport& report, bool renew_lag = false);
+  void rest_gap(const SaddleReport& report);
+  bool out_of_patience(const SaddleOptions& options, int iteration, int factorizations) const;
   bool may_venture() const;
   void venture(std::span<const Vec3> x, std::span<const double> lambda, double enough, double excess);
   bool settle_venture(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda,
                       SaddleReport& report);
 
+  bool resting_ = false;         // prescribed motion waits for the body to follow
+  int creeping_ = 0;             // steps in a row that were cut to next to nothing
+  std::uint8_t full_steps_ = 0;  // of the last eight, the latest in the lowest bit
   // A step that the merit refused and that was taken all the same, until one more Newton step has shown
   // where it leads: where it started, its direction, and the merit that must be reached.
   struct Venture {

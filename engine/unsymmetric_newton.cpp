@@ -183,7 +183,8 @@ SaddleReport UnsymmetricNewton::solve(const SaddleProblem& p, const SaddleOption
     if (iteration == 0 && !std::isfinite(assembly_.energy())) return fail(SaddleStatus::not_finite);
     position_gap(p, x);
     if (cancelled && cancelled()) return fail(SaddleStatus::cancelled);
-    if (report.iterations >= options.max_iterations || report.factorizations >= options.max_factorizations)
+    if (report.iterations >= std::min(options.max_iterations, options.patient_iterations) ||
+        report.factorizations >= std::min(options.max_factorizations, options.patient_factorizations))
       return fail(SaddleStatus::iteration_limit);
     if (balanced(p, options, x, lambda, report)) return report;
     if (s.has_bounds()) choose_clamped(lambda, iteration == 0);

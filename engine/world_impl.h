@@ -71,6 +71,8 @@ struct World::Impl {
   struct Allowance {
     int iterations = 0, factorizations = 0;
     bool keep_unfinished = false;
+    // Beyond these a solve must get somewhere; 0: as above.
+    int patient_iterations = 0, patient_factorizations = 0;
   };
   SaddleProblem problem_at(double t);
   bool look_back(double t, double h);

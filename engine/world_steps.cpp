@@ -256,15 +256,15 @@ StepReport World::advance(double h) {
     double dt = increment > 0.999 * remaining ? remaining : increment;
     // The end of half a turn is that of half a turn the other way.
     while (w.largest_turn(w.state.t, w.state.t + dt) > largest_turn && dt > 1e-9 * h) dt *= 0.5;
-    // While the increment can still be cut, patience has an end; less of it where the whole one failed
-    // already.
+    // While the increment can still be cut, patience has an end, unless the solve gets somewhere; less of it
+    // where the whole one failed already.
     const bool last_chance = 0.5 * dt < w.options.smallest_fraction * h;
     const int patience = successes > 0 ? 40 : 25, patience_for_factors = successes > 0 ? 70 : 35;
     if (careful) w.state_before = w.state;
-    const SaddleReport r = w.attempt(
-        dt, last_chance
-                ? Impl::Allowance{w.options.max_iterations, 2 * w.options.max_iterations}
-                : Impl::Allowance{std::min(w.options.max_iterations, patience), patience_for_factors});
+    const SaddleReport r =
+        w.attempt(dt, last_chance ? Impl::Allowance{w.options.max_iterations, 2 * w.options.max_iterations}
+                                  : Impl::Allowance{w.options.max_iterations, 3 * w.options.max_iterations,
+                                                    false, patience, patience_for_factors});
     accumulate(report, r);
     if (r.status == SaddleStatus::converged && careful) {
       const double error = w.estimate_error(dt);

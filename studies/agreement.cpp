@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
+#include <memory>
+#include <optional>
 
 namespace isochor::studies {
 
@@ -16,7 +17,7 @@ struct End {
   std::string refused;
 };
 
-Result<End> run(SceneDef scene, Method method, Solver solver, int threads) {
+Result<End> run(SceneDef scene, Method method, Solver solver, int most_steps, int threads) {
   scene.analysis.method = method;
   scene.analysis.solver = solver;
   End end;
@@ -28,7 +29,8 @@ Result<End> run(SceneDef scene, Method method, Solver solver, int threads) {
     return end;
   }
   const StepPlan plan = plan_steps(scene.analysis);
-  for (int step = 0; step < plan.steps; ++step) {
+  const int steps = most_steps > 0 ? std::min(most_steps, plan.steps) : plan.steps;
+  for (int step = 0; step < steps; ++step) {
     const StepReport report = world.advance(plan.h);
     if (report.status != StepStatus::converged) return Error{report.reason};
     end.iterations += report.iterations;
@@ -50,28 +52,40 @@ Result<End> run(SceneDef scene, Method method, Solver solver, int threads) {
   return end;
 }
 
+Result<Numbers> compare(const End& a, const End& b) {
+  double most = 0;
+  for (std::size_t k = 0; k < a.x.size(); ++k) {
+    for (std::size_t i = 0; i < a.x[k].size(); ++i) {
+      const Vec3 d = a.x[k][i] - b.x[k][i];
+      most = std::max(most, std::sqrt(dot(d, d)) / a.length[k]);
+    }
+  }
+  return Numbers{{"distance", most},
+                 {"iterations", a.iterations},
+                 {"reference iterations", b.iterations},
+                 {"refused", 0}};
+}
+
 }  // namespace
 
-Probe agreement_probe(const SceneDef& scene, Method method, Solver solver) {
-  return [scene, method, solver](const SceneDef&, int threads) -> Result<Numbers> {
-    auto one = run(scene, method, solver, threads);
-    if (!one) return Error{one.error()};
-    if (!one.value().refused.empty()) return Numbers{{"refused", 1}};
-    auto other = run(scene, Method::saddle_point, Solver::automatic, threads);
-    if (!other) return Error{other.error()};
-    const End &a = one.value(), &b = other.value();
-    double most = 0;
-    for (std::size_t k = 0; k < a.x.size(); ++k) {
-      for (std::size_t i = 0; i < a.x[k].size(); ++i) {
-        const Vec3 d = a.x[k][i] - b.x[k][i];
-        most = std::max(most, std::sqrt(dot(d, d)) / a.length[k]);
+std::vector<Probe> agreement_probes(const SceneDef& scene, std::span<const SameEnd> ways, int steps) {
+  // Of saddle_point, found once for all ways.
+  auto reference = std::make_shared<std::optional<End>>();
+  std::vector<Probe> out;
+  for (const SameEnd& way : ways) {
+    out.push_back([scene, way, steps, reference](const SceneDef&, int threads) -> Result<Numbers> {
+      auto one = run(scene, way.method, way.solver, steps, threads);
+      if (!one) return Error{one.error()};
+      if (!one.value().refused.empty()) return Numbers{{"refused", 1}};
+      if (!*reference) {
+        auto other = run(scene, Method::saddle_point, Solver::automatic, steps, threads);
+        if (!other) return Error{other.error()};
+        *reference = std::move(other).value();
       }
-    }
-    return Numbers{{"distance", most},
-                   {"iterations", a.iterations},
-                   {"reference iterations", b.iterations},
-                   {"refused", 0}};
-  };
+      return compare(one.value(), **reference);
+    });
+  }
+  return out;
 }
 
 }  // namespace isochor::studies

@@ -30,11 +30,15 @@ class Runner {
     threads_ = options.threads > 0 ? options.threads
                                    : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     repeats_ = options.quick ? 1 : study.repeats;
+    for (const Cell& cell : cells_) {
+      if (chosen(cell)) chosen_.push_back(&cell);
+    }
   }
 
   StudyResult run();
 
  private:
+  bool chosen(const Cell& cell) const { return cell.id.find(options_.only) != std::string::npos; }
   bool stopped() const { return options_.stop && options_.stop(); }
   Result<void> open();
   Result<void> keep_results(bool complete) const;
@@ -47,6 +51,7 @@ class Runner {
   const Study& study_;
   const StudyOptions& options_;
   std::vector<Cell> cells_;
+  std::vector<const Cell*> chosen_;  // those to measure now
   int threads_ = 1, repeats_ = 1;
   std::map<std::string, Measured> earlier_;  // by id: of this build, not yet taken
   StudyResult result_;
@@ -55,18 +60,23 @@ class Runner {
 };
 
 Result<void> Runner::open() {
+  if (chosen_.empty()) {
+    return Error{"no cell of the study " + std::string(study_.name) + (options_.quick ? " --quick" : "") +
+                 " has \"" + options_.only + "\" in its name" +
+                 (cells_.empty() ? "" : "; the first is \"" + cells_.front().id + "\"")};
+  }
   std::error_code code;
   std::filesystem::create_directories(options_.folder, code);
   if (code)
     return Error{"output folder " + options_.folder + " cannot be made: " + code.message() +
                  "; name another with --out"};
-  if (!options_.fresh) {
-    std::map<std::string, std::string> wanted;
-    for (const Cell& cell : cells_) wanted[cell.id] = fingerprint(cell, threads_, repeats_);
-    for (Measured& m : read_results(file("results.json"))) {
-      const auto it = wanted.find(m.id);
-      if (it != wanted.end() && it->second == m.fingerprint) earlier_[m.id] = std::move(m);
-    }
+  std::map<std::string, std::string> wanted;
+  for (const Cell& cell : cells_) {
+    if (!options_.fresh || !chosen(cell)) wanted[cell.id] = fingerprint(cell, threads_, repeats_);
+  }
+  for (Measured& m : read_results(file("results.json"))) {
+    const auto it = wanted.find(m.id);
+    if (it != wanted.end() && it->second == m.fingerprint) earlier_[m.id] = std::move(m);
   }
   return {};
 }
@@ -112,9 +122,9 @@ void Runner::take(Measured m, bool kept) {
   if (kept) ++result_.kept;
   result_.cells.push_back(std::move(m));
   if (!options_.on_cell) return;
-  const std::size_t left = cells_.size() - result_.cells.size();
+  const std::size_t left = chosen_.size() - result_.cells.size();
   const double each = measured_ > 0 ? measuring_ / static_cast<double>(measured_) : 0;
-  options_.on_cell({result_.cells.size(), cells_.size(), result_.cells.back(), kept, now() - start_,
+  options_.on_cell({result_.cells.size(), chosen_.size(), result_.cells.back(), kept, now() - start_,
                     each * static_cast<double>(left)});
 }
 
@@ -124,7 +134,8 @@ StudyResult Runner::run() {
     result_.reason = r.error();
     return result_;
   }
-  for (const Cell& cell : cells_) {
+  for (const Cell* each : chosen_) {
+    const Cell& cell = *each;
     if (stopped()) break;
     const auto found = earlier_.find(cell.id);
     if (found != earlier_.end()) {
@@ -143,15 +154,14 @@ StudyResult Runner::run() {
       return result_;
     }
   }
-  const bool complete = result_.cells.size() == cells_.size();
-  result_.status = complete ? StudyStatus::complete : StudyStatus::interrupted;
+  result_.status = result_.cells.size() == chosen_.size() ? StudyStatus::complete : StudyStatus::interrupted;
   result_.seconds = now() - start_;
   for (auto& [id, cell] : earlier_) {
     if (!cell.good()) ++result_.not_good;
     result_.cells.push_back(cell);
   }
   earlier_.clear();
-  for (auto& written : {keep_results(complete), write_page()}) {
+  for (auto& written : {keep_results(result_.cells.size() == cells_.size()), write_page()}) {
     if (written) continue;
     result_.status = StudyStatus::failed;
     result_.reason = written.error();

@@ -25,6 +25,7 @@ struct StudyOptions {
   std::string folder;  // required
   bool quick = false;
   bool fresh = false;  // forget what an earlier run measured
+  std::string only;    // measure the cells with this text in their ids; empty: all
   int threads = 0;     // 0: all the machine has
   std::function<bool()> stop;
   std::function<void(const CellProgress&)> on_cell;
@@ -35,8 +36,9 @@ enum class StudyStatus : std::uint8_t { complete, interrupted, failed };
 struct StudyResult {
   StudyStatus status = StudyStatus::failed;
   std::string reason;  // of a failure: outputs that cannot be written
-  std::vector<Measured> cells;
-  std::size_t total = 0, kept = 0, not_good = 0;
+  std::vector<Measured> cells;  // those of this run, then what earlier ones left
+  std::size_t total = 0;  // cells of the study
+  std::size_t kept = 0, not_good = 0;
   double seconds = 0;
 };
 

@@ -44,6 +44,9 @@ struct TortureCase {
   double largest_load = 1;  // of the sweep
   bool dynamic = true, statics = true;
   TortureResult (*run)(const TortureSettings& settings);
+  double further_load = 0;  // of the sweep beside 1, 3 and 10; 0: none
+  bool large = false;       // its mesh has nodes enough with linear elements
+  double longest_step = 1;  // [s] that it makes sense with
 };
 
 std::span<const TortureCase> torture_cases();

@@ -4,6 +4,7 @@
 #include "isochor/mesh_io.h"
 #include "scenes/library.h"
 #include "studies/torture_bench.h"
+#include "studies/torture_motion.h"
 
 namespace isochor::studies {
 
@@ -409,10 +410,12 @@ constexpr TortureCase kCases[] = {
     {"stretch", "Bar stretched to 3.4 times its length", 1, true, true, stretch},
     {"compression", "Bonded block pressed to a fifth of its height", 1, true, true, compression},
     {"puck", "Block indented to half its height", 1, true, true, puck},
-    {"bubble", "Bubble, multiples of 4 kPa", 10, false, true, bubble_case},
-    {"cushion", "Cushion, multiples of 10 kPa", 10, false, true, cushion_case},
+    {"bubble", "Bubble, multiples of 4 kPa", 10, false, true, bubble_case, 5},
+    {"cushion", "Cushion, multiples of 10 kPa", 10, false, true, cushion_case, 5},
     {"sphere", "Thick sphere, load 2 beyond its limit point", 2, false, true, sphere},
     {"drop", "Block dropped on a floor", 3, true, false, drop},
+    {"ball", "Ball that hits a floor, coarse", 3, true, false, ball_coarse},
+    {"ball_fine", "Ball that hits a floor, fine", 1, true, false, ball_fine, 0, true},
     {"standing", "Standing cube", 4, true, true, standing},
     {"scrambled", "Cube with random vertices", 1, false, true, scrambled},
     {"crushed", "Cube crushed flat", 1, false, true, crushed},
@@ -421,6 +424,7 @@ constexpr TortureCase kCases[] = {
     {"slivers", "Dihedral angles of a degree", 10, true, true, slivers},
     {"graded", "Cells of size ratio a thousand", 4, true, true, graded},
     {"spin", "Free body spinning for 1,000 steps", 1, true, false, spin},
+    {"swing", "Free bar swinging undamped for 1,000 steps", 1, true, false, swing, 0, false, 1e-3},
     {"at_rest", "Nothing acts", 1, true, true, at_rest},
     {"poisoned", "Loads that are not finite", 1, true, true, poisoned},
 };

@@ -13,6 +13,7 @@ using namespace test;
 
 struct Climb {
   int most = 0;  // dual steps until 1 % of volume error, the largest number of all load steps
+  int all = 0;   // of all load steps together
   SaddleStatus status = SaddleStatus::converged;
 };
 
@@ -59,11 +60,27 @@ Climb inflate(bool moderate, DualAscentOptions ascent) {
     const SaddleReport r = method.solve(data.problem(), {}, x, lambda);
     if (r.status != SaddleStatus::cancelled) out.status = r.status;
     out.most = std::max(out.most, steps);
+    out.all += steps;
   }
   return out;
 }
 
 }  // namespace
+
+TEST_CASE("conjugate directions need fewer steps than steepest ones") {
+  for (const bool moderate : {true, false}) {
+    DualAscentOptions steepest{.augmented = !moderate, .scaled = !moderate}, conjugate = steepest;
+    conjugate.conjugate = true;
+    const Climb a = inflate(moderate, steepest), b = inflate(moderate, conjugate);
+    INFO((moderate ? "moderate Poisson's ratio: " : "augmented rows: ")
+         << "steepest " << a.most << " at most, " << a.all << " in all, conjugate " << b.most << ", "
+         << b.all);
+    CHECK(b.status == SaddleStatus::converged);
+    CHECK(b.most <= a.most);
+    CHECK(b.all < a.all);
+    if (moderate) CHECK(b.most < a.most);
+  }
+}
 
 TEST_CASE("dual ascent reaches one percent of volume error within six steps") {
   const Climb paper = inflate(true, {.augmented = false, .scaled = false});

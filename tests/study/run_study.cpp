@@ -163,6 +163,35 @@ TEST_CASE("a stopped study leaves what it has and goes on from there") {
   CHECK(read_results((folder.path / "results.json").string()).size() == 3);
 }
 
+TEST_CASE("a study measures the cells whose names hold a text, and says when there are none") {
+  const Folder folder;
+  StudyOptions options;
+  options.folder = folder.path.string();
+  options.threads = 1;
+  options.only = "ll2";
+  const StudyResult one = run_study(kStudy, options);
+  CHECK(one.status == StudyStatus::complete);
+  REQUIRE(one.cells.size() == 1);
+  CHECK(one.cells[0].id == "cell2");
+  CHECK(one.total == 3);
+  CHECK(slurp(folder.path / "results.json").find("\"complete\": true") == std::string::npos);
+  // What other runs left in the folder stays.
+  options.only = "cell0";
+  std::size_t of = 0;
+  options.on_cell = [&](const CellProgress& p) { of = p.total; };
+  CHECK(run_study(kStudy, options).cells.size() == 2);
+  CHECK(of == 1);
+  CHECK(read_results((folder.path / "results.json").string()).size() == 2);
+  options.only = "";
+  CHECK(run_study(kStudy, options).kept == 2);
+  options.only = "cell9";
+  const StudyResult none = run_study(kStudy, options);
+  CHECK(none.status == StudyStatus::failed);
+  CHECK(none.reason.find("\"cell9\"") != std::string::npos);
+  CHECK(none.reason.find("\"cell0\"") != std::string::npos);
+  CHECK(read_results((folder.path / "results.json").string()).size() == 3);
+}
+
 TEST_CASE("a cell is measured again when what decides its numbers changed") {
   const Cell cell = three_cells(false)[0];
   const std::string before = fingerprint(cell, 1, 2);

@@ -91,6 +91,67 @@ TEST_CASE("a path of equilibria goes through two limit points of an arch") {
   CHECK(jump.crown() == Approx(crown.back()).epsilon(1e-6));
 }
 
+namespace {
+
+// A quarter of a shallow cap over a square, its rim clamped, under its weight times the load factor.
+struct Cap {
+  World world;
+  BodyId body{};
+  Cap() : world(test::make_world(options())) {
+    BoxMeshDef def;
+    def.upper = {0.5, 0.5, 0.02};
+    def.divisions = {7, 7, 2};
+    Mesh mesh = test::value(box_mesh(def));
+    for (Vec3& x : mesh.nodes) x.z += 0.09 * std::sin(kPi * x.x) * std::sin(kPi * x.y);
+    body = test::add_body(world, std::move(mesh), Element::tet4_edge_smoothed, test::neo_hookean(1e6, 0.5));
+    test::add_volume(world, body);
+    test::hold(world, body, {"x0", "y0"});
+    test::hold(world, body, {"x1"}, {{1, 0, 0}});
+    test::hold(world, body, {"y1"}, {{0, 1, 0}});
+  }
+  static WorldOptions options() {
+    WorldOptions o = test::static_options();
+    o.scheme = continuation();
+    o.gravity = {0, 0, -400};
+    o.gravity_curve = Curve::ramp(20, 20);
+    return o;
+  }
+  double apex() const { return test::displacement_at(world, body, {0.5, 0.5, 0.11}).z; }
+};
+
+}  // namespace
+
+TEST_CASE("a shallow shell snaps through, and every equilibrium of the path says whether it is stable") {
+  Cap cap;
+  std::vector<double> t, apex;
+  std::vector<Index> unstable;
+  // Until it has turned over and carries more than at its limit point.
+  for (int k = 0; k < 60 && (apex.empty() || apex.back() > -0.2); ++k) {
+    const StepReport r = cap.world.follow(0.02);
+    INFO(k << ": " << r.reason);
+    REQUIRE(r.status == StepStatus::converged);
+    t.push_back(cap.world.time());
+    apex.push_back(cap.apex());
+    unstable.push_back(r.unstable_directions);
+    UNSCOPED_INFO("t " << t.back() << " apex " << apex.back() << " unstable " << unstable.back()
+                       << " iterations " << r.iterations);
+    CHECK(cap.world.measures(cap.body).volume_error < 1e-9);
+  }
+  const auto peak_at = static_cast<std::size_t>(
+      std::find_if(t.begin() + 1, t.end(), [](const double& v) { return v < *(&v - 1); }) - t.begin());
+  REQUIRE(peak_at < t.size());
+  const auto valley_at = static_cast<std::size_t>(
+      std::min_element(t.begin() + static_cast<std::ptrdiff_t>(peak_at), t.end()) - t.begin());
+  REQUIRE(valley_at + 1 < t.size());
+  CHECK(t[valley_at] < 0.95 * t[peak_at - 1]);
+  CHECK(t.back() > t[valley_at]);
+  CHECK(apex[peak_at] > -0.11);
+  CHECK(apex.back() < -0.15);
+  for (std::size_t k = 0; k + 2 < peak_at; ++k) CHECK(unstable[k] == 0);
+  for (std::size_t k = peak_at + 1; k + 1 < valley_at; ++k) CHECK(unstable[k] > 0);
+  CHECK(unstable.back() == 0);
+}
+
 TEST_CASE("without the damped motion the arch stops at its limit point, unchanged by what was tried") {
   WorldOptions options = test::static_options();
   options.transient_rescue = false;
