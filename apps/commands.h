@@ -40,7 +40,14 @@ struct StudyArguments {
   int threads = 0;
 };
 
+struct ViewArguments {
+  std::string folder;
+  bool remake = false;         // from the frames, even where there is a page
+  bool quiet_browser = false;  // only say where it is
+};
+
 int run(const RunArguments& arguments);
+int view(const ViewArguments& arguments);
 int study(const StudyArguments& arguments);
 int show(const std::string& scene, const std::vector<std::string>& overrides);
 int list(bool json);

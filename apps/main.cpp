@@ -1,4 +1,4 @@
-// isochor: list, run, check and show scenes from the command line.
+// isochor: list, run, view, check and show scenes, and studies, from the command line.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
@@ -52,12 +52,20 @@ void add_study(CLI::App& top, app::StudyArguments& a) {
   c->footer("A study that is stopped (Ctrl-C) leaves what it has; the same command goes on from there.");
 }
 
+void add_view(CLI::App& top, app::ViewArguments& a) {
+  CLI::App* c = top.add_subcommand("view", "Open the results page of a folder; make it where it is missing");
+  c->add_option("folder", a.folder, "What `isochor run` or `isochor study` wrote: out/finger")->required();
+  c->add_flag("--remake", a.remake, "Make the page from the frames (.pvd, .vtu) even if there is one");
+  c->add_flag("--no-browser", a.quiet_browser, "Only print where the page is");
+}
+
 int dispatch(int argc, char** argv) {
   CLI::App top{"Isochor: soft incompressible bodies, pneumatic robots at Poisson's ratio 0.5"};
   top.name("isochor");
   top.require_subcommand(1);
   app::RunArguments run;
   app::StudyArguments study;
+  app::ViewArguments view;
   bool json = false;
   double scale = 1;
   std::vector<std::string> meshes, overrides;
@@ -66,6 +74,7 @@ int dispatch(int argc, char** argv) {
   list->add_flag("--json", json, "As JSON");
   add_run(top, run);
   add_study(top, study);
+  add_view(top, view);
   CLI::App* check =
       top.add_subcommand("check", "Check mesh files: counts and findings; exit 2 if one is not usable");
   check->add_option("mesh", meshes, "Mesh files (.msh, .vtk, .vtu, .node/.ele, .mesh)")->required();
@@ -91,6 +100,7 @@ int dispatch(int argc, char** argv) {
   if (show->parsed()) return app::show(scene, overrides);
   if (version->parsed()) return app::version(json);
   if (top.got_subcommand("study")) return app::study(study);
+  if (top.got_subcommand("view")) return app::view(view);
   return app::run(run);
 }
 

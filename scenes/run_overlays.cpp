@@ -3,16 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "constraints/obstacle_shape.h"
 #include "constraints/rigid_body.h"
+#include "isochor/painted.h"
 
 namespace isochor {
 
 namespace {
 
-constexpr int kAround = 32, kAlong = 12;
+constexpr int kAround = 32, kAlong = 12, kAcross = 4;  // kAcross: over a rounded edge
 
 struct Triangles {
   std::vector<Vec3> points;
@@ -61,7 +63,70 @@ Triangles round_shape(double radius, double straight) {
   return t;
 }
 
-// Rounded edges are drawn sharp; a plane as a square of this size.
+// Caps joined to the side by quarters of a circle.
+Triangles round_cylinder(double radius, double length, double rounding) {
+  Triangles t;
+  Index last = -1;
+  for (const double side : {-1.0, 1.0}) {
+    for (int k = 0; k <= kAcross; ++k) {
+      const double angle = 0.5 * std::numbers::pi * (side < 0 ? k : kAcross - k) / kAcross;
+      const double z = side * (0.5 * length - rounding * (1 - std::cos(angle)));
+      const Index ring = t.ring(radius - rounding * (1 - std::sin(angle)), z);
+      if (last < 0)
+        t.cap(ring, z, false);
+      else
+        t.ribbon(last, ring);
+      last = ring;
+    }
+  }
+  t.cap(last, 0.5 * length, true);
+  return t;
+}
+
+// A box whose surface is a grid, finer over the edges, and pulled to the distance `rounding` from a smaller
+// box. Points on an edge of the grid's faces are one point, so that shading runs over it.
+Triangles round_box(const Vec3& size, double rounding) {
+  constexpr int n = 2 * kAcross + 2;
+  Triangles t;
+  std::map<std::array<int, 3>, Index> known;
+  const auto point = [&](const std::array<int, 3>& at) {
+    const auto [entry, fresh] = known.try_emplace(at, static_cast<Index>(t.points.size()));
+    if (!fresh) return entry->second;
+    Vec3 inner, out;
+    for (int axis = 0; axis < 3; ++axis) {
+      const int k = at[static_cast<std::size_t>(axis)];
+      const bool low = 2 * k < n;
+      const int steps = low ? kAcross - k : k - kAcross - 1;
+      inner[axis] = (low ? -1 : 1) * (0.5 * size[axis] - rounding);
+      out[axis] = (low ? -1 : 1) * std::tan(0.25 * std::numbers::pi * steps / kAcross);
+    }
+    t.points.push_back(inner + (rounding / std::sqrt(dot(out, out))) * out);
+    return entry->second;
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const bool upper : {false, true}) {
+      for (int i = 0; i + 1 < n; ++i) {
+        for (int j = 0; j + 1 < n; ++j) {
+          const auto corner = [&](int di, int dj) {
+            std::array<int, 3> at{};
+            at[axis] = upper ? n - 1 : 0;
+            at[(axis + 1) % 3] = i + di;
+            at[(axis + 2) % 3] = j + dj;
+            return point(at);
+          };
+          const Index a = corner(0, 0), b = corner(1, 0), c = corner(1, 1), d = corner(0, 1);
+          if (upper)
+            t.corners.insert(t.corners.end(), {a, b, c, a, c, d});
+          else
+            t.corners.insert(t.corners.end(), {a, c, b, a, d, c});
+        }
+      }
+    }
+  }
+  return t;
+}
+
+// A plane is drawn as a square of this size.
 Triangles triangles_of(const Obstacle& o, double size) {
   Triangles t;
   switch (o.shape) {
@@ -74,6 +139,7 @@ Triangles triangles_of(const Obstacle& o, double size) {
     case ObstacleShape::capsule:
       return round_shape(o.radius, o.length);
     case ObstacleShape::cylinder: {
+      if (o.rounding > 0) return round_cylinder(o.radius, o.length, o.rounding);
       const Index low = t.ring(o.radius, -0.5 * o.length), high = t.ring(o.radius, 0.5 * o.length);
       t.ribbon(low, high);
       t.cap(low, -0.5 * o.length, false);
@@ -81,6 +147,7 @@ Triangles triangles_of(const Obstacle& o, double size) {
       break;
     }
     case ObstacleShape::box:
+      if (o.rounding > 0) return round_box(o.size, o.rounding);
       for (int k = 0; k < 8; ++k)
         t.points.push_back({(k & 1 ? 0.5 : -0.5) * o.size.x, (k & 2 ? 0.5 : -0.5) * o.size.y,
                             (k & 4 ? 0.5 : -0.5) * o.size.z});
@@ -170,6 +237,37 @@ bool holds(const VolumeZone& zone, const Mesh& mesh, Index cell) {
   });
 }
 
+// Of each cell the zone it is in; of zones that overlap the first, of painted ones that with the largest
+// weight. Null: none.
+std::vector<const VolumeZone*> zone_of_cells(const VolumeDef& def, const Mesh& mesh) {
+  const auto count = static_cast<std::size_t>(mesh.cell_count());
+  std::vector<const VolumeZone*> out(count, nullptr);
+  std::vector<const VolumeZone*> painted;
+  std::vector<std::string> fields;
+  for (const VolumeZone& zone : def.zones) {
+    for (std::size_t c = 0; c < count; ++c) {
+      if (!out[c] && holds(zone, mesh, static_cast<Index>(c))) out[c] = &zone;
+    }
+    if (zone.field.empty()) continue;
+    painted.push_back(&zone);
+    fields.push_back(zone.field);
+  }
+  if (fields.empty()) return out;
+  // The scene has been compiled with this paint, so it is there; a page without the map would do no harm.
+  const auto paint = painted_cells(mesh, fields, def.painted_surfaces, def.unpainted);
+  if (!paint) return out;
+  for (std::size_t c = 0; c < count; ++c) {
+    double largest = 0;
+    for (std::size_t f = 0; f < painted.size() && (!out[c] || largest > 0); ++f) {
+      const double weight = paint.value().weight[f][c];
+      if (weight <= largest) continue;
+      largest = weight;
+      out[c] = painted[f];
+    }
+  }
+  return out;
+}
+
 std::size_t number_of(std::vector<std::string>& names, const std::string& name) {
   const auto it = std::find(names.begin(), names.end(), name);
   if (it != names.end()) return static_cast<std::size_t>(it - names.begin());
@@ -233,19 +331,20 @@ void RunOverlays::add_maps(const RunView& view, PageScene& scene,
     // A surface of its own has no cells to ask; its body stays without a map, and so do all.
     if (triangle_cell[b].empty()) return;
     const Mesh& mesh = view.built.world.mesh(view.built.bodies[b]);
+    std::vector<std::vector<const VolumeZone*>> zone_of;
+    for (std::size_t r = 0; !zones.empty() && r < view.scene.volumes->size(); ++r) {
+      const VolumeDef& def = (*view.scene.volumes)[r].def;
+      if (def.space == VolumeSpace::zone && static_cast<std::size_t>(def.body) == b)
+        zone_of.push_back(zone_of_cells(def, mesh));
+    }
     for (const Index cell : triangle_cell[b]) {
       std::string region = region_of(mesh, cell);
       if (triangle_cell.size() > 1) region = view.scene.bodies[b].name + ": " + region;
       region_map[triangle] = static_cast<double>(number_of(regions, region));
-      if (!zones.empty()) {
-        for (const VolumeRows& rows : *view.scene.volumes) {
-          if (rows.def.space != VolumeSpace::zone || static_cast<std::size_t>(rows.def.body) != b) continue;
-          for (const VolumeZone& zone : rows.def.zones) {
-            // Of zones that overlap, the first.
-            if (zone_map[triangle] > 0 || !holds(zone, mesh, cell)) continue;
-            zone_map[triangle] = static_cast<double>(number_of(zones, zone.name));
-          }
-        }
+      for (const auto& of : zone_of) {
+        const VolumeZone* zone = of[static_cast<std::size_t>(cell)];
+        if (zone && zone_map[triangle] == 0)
+          zone_map[triangle] = static_cast<double>(number_of(zones, zone->name));
       }
       ++triangle;
     }

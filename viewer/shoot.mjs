@@ -54,6 +54,8 @@ try {
   const error = await page.evaluate('window.isochorError ?? null');
   if (error) throw new Error(`the page cannot show its results: ${error}\n${page.errors.join('\n')}`);
   if (whole) {
+    // Charts below the window wait until they are seen.
+    await page.evaluate('window.isochorViewer?.plots?.drawAll()');
     const height = await page.evaluate('Math.ceil(document.documentElement.scrollHeight)');
     await page.resize(size[0], height, scale);
     await page.evaluate('new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))');

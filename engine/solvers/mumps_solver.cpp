@@ -26,6 +26,10 @@ std::mutex& mumps_mutex() {
 constexpr int use_communicator_of_all = -987654;  // MUMPS' own name for MPI_COMM_WORLD
 constexpr int job_start = -1, job_end = -2, job_analyze = 1, job_factor = 2, job_solve = 3;
 
+// PORD ends the process ("no valid number of stages") on graphs that collapse to one vertex, as small ones
+// do, where it has little to win anyway.
+constexpr Index kSmallestForPord = 4000;
+
 class MumpsSolver final : public DirectSolver {
  public:
   explicit MumpsSolver(const MumpsOptions& options) : DirectSolver(options.unsymmetric), options_(options) {}
@@ -148,6 +152,8 @@ FactorReport MumpsSolver::analyze_pattern() {
     double fewest = std::numeric_limits<double>::infinity();
     OrderingMethod last = OrderingMethod::as_given;
     for (const auto method : {OrderingMethod::metis, OrderingMethod::amf, OrderingMethod::pord}) {
+      // It would be METIS once more, on all unknowns and in vain: half of the analysis of a small system.
+      if (method == OrderingMethod::pord && p.size < kSmallestForPord) continue;
       Ordering ordering = order_unknowns(p, method);
       if (ordering.method != method) continue;
       analyze_with(ordering);
@@ -220,11 +226,9 @@ std::unique_ptr<LinearSolver> make_mumps_solver(const MumpsOptions& options) {
 bool mumps_graph_ordering(std::span<const Index> start, std::span<const Index> neighbor,
                           OrderingMethod method, std::vector<Index>& position) {
   const Index n = static_cast<Index>(start.size()) - 1;
-  // Where all are neighbors there is nothing to order. PORD ends the process ("no valid number of stages") on
-  // graphs that collapse to one vertex, as small ones do, where it has little to win anyway.
-  constexpr Index smallest_for_pord = 4000;
+  // Where all are neighbors there is nothing to order.
   if (neighbor.size() == at(n) * at(n - 1)) return false;
-  if (method == OrderingMethod::pord && n < smallest_for_pord) return false;
+  if (method == OrderingMethod::pord && n < kSmallestForPord) return false;
   std::vector<MUMPS_INT> row, column;
   for (Index i = 0; i < n; ++i) {
     row.push_back(i + 1);

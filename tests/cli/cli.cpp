@@ -158,6 +158,35 @@ TEST_CASE("no convergence and a spent budget have codes of their own") {
   CHECK(shell.run("run block.json --budget 1e-6").code == 4);
 }
 
+TEST_CASE("view makes the page of a folder from its frames") {
+  const Shell shell;
+  REQUIRE(shell.run("run cantilever --set bodies[0].mesh.box.divisions=[4,1,1] --quiet --out frames").code ==
+          0);
+  const fs::path page = shell.folder() / "frames/index.html";
+  fs::remove(page);
+  const Outcome made = shell.run("view frames --no-browser");
+  if (made.code != 0) {
+    CHECK_THAT(made.err, Contains("no results page"));  // a build without node and npm
+  } else {
+    CHECK_THAT(made.out, Contains("2 frames, 24 elements"));
+    CHECK_THAT(made.out, Contains("frames/index.html"));
+    const std::string text = slurp(page);
+    CHECK_THAT(text, Contains("Mean stress"));
+    CHECK_THAT(text, Contains("tip.y_m"));
+    // A page that is there stays, unless asked for.
+    std::ofstream(page) << "kept";
+    CHECK(shell.run("view frames --no-browser").code == 0);
+    CHECK(slurp(page) == "kept");
+    CHECK(shell.run("view frames --no-browser --remake").code == 0);
+    CHECK(slurp(page).size() > 1000);
+  }
+  CHECK(shell.run("view nowhere").code == 2);
+  fs::create_directories(shell.folder() / "empty");
+  const Outcome empty = shell.run("view empty --no-browser");
+  CHECK(empty.code == 2);
+  CHECK((made.code != 0 || empty.err.find("0 .pvd files") != std::string::npos));
+}
+
 TEST_CASE("check judges meshes") {
   Shell shell;
   const Outcome good = shell.run("check " ISOCHOR_SCENES "/meshes/tube.msh");

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "catch.h"
+#include "constraints/obstacle_shape.h"
 #include "page_surface.h"
 #include "scenes/library.h"
 #include "scenes/run_overlays.h"
@@ -124,6 +125,49 @@ TEST_CASE("obstacles, free bodies, cables, contact points and zones reach the pa
   }
 }
 
+TEST_CASE("painted zones reach the page where they were painted") {
+  auto built = build(find_scene("painted_arm")->make({}), {1});
+  INFO((built ? std::string() : built.error()));
+  REQUIRE(built.ok());
+  const SceneDef scene = find_scene("painted_arm")->make({});
+  RunResult result;
+  PageScene page;
+  std::vector<std::vector<Index>> cells(1);
+  PageMeshOptions options;
+  options.triangle_cell = &cells[0];
+  const Mesh& mesh = built.value().world.mesh(built.value().bodies[0]);
+  add_page_mesh(page, mesh, {"arm"}, options);
+  const RunView view{scene, built.value(), result};
+  RunOverlays overlays;
+  overlays.start(view, page, cells);
+  const auto map = std::find_if(page.fields.begin(), page.fields.end(),
+                                [](const PageField& f) { return f.name == "zone"; });
+  REQUIRE(map != page.fields.end());
+  REQUIRE(map->categories.size() == 3);
+  CHECK(map->categories[0] == "no zone");
+  PageFrame frame;
+  frame.fields.resize(static_cast<std::size_t>(map - page.fields.begin()));
+  StepRecord record;
+  result.records = {record};
+  overlays.append(view, frame);
+  const auto& zone = frame.fields.back();
+  // The paint is 1 on the upper and the lower half of the skin between the ends and fades within 15 mm.
+  int counted = 0;
+  for (std::size_t t = 0; t < cells[0].size(); ++t) {
+    Vec3 middle{};
+    for (std::size_t k = 0; k < 3; ++k)
+      middle += (1.0 / 3) * page.rest[static_cast<std::size_t>(page.triangles[3 * t + k])];
+    const bool skin = std::hypot(middle.y, middle.z) > 0.025;
+    if (!skin) continue;
+    const std::string& name = map->categories[static_cast<std::size_t>(zone[t])];
+    if (middle.x < 0.02 || middle.x > 0.18) CHECK(name == "no zone");
+    if (middle.x < 0.06 || middle.x > 0.14 || std::abs(middle.y) < 0.012) continue;
+    CHECK(name == (middle.y > 0 ? "upper" : "lower"));
+    ++counted;
+  }
+  CHECK(counted > 100);
+}
+
 TEST_CASE("a free body that turns is drawn turned") {
   SceneDef scene = block();
   scene.rigid_bodies[0].shape.shape = ObstacleShape::box;
@@ -162,4 +206,42 @@ TEST_CASE("a free body that turns is drawn turned") {
   CHECK(high.x - low.x == Approx(0.4));
   CHECK(high.y - low.y == Approx(0.2));
   CHECK(high.z - low.z == Approx(0.6));
+}
+
+TEST_CASE("rounded edges are drawn round") {
+  for (const auto shape : {ObstacleShape::box, ObstacleShape::cylinder}) {
+    CAPTURE(static_cast<int>(shape));
+    SceneDef scene = block();
+    Obstacle& solid = scene.rigid_bodies[0].shape;
+    solid.shape = shape;
+    solid.size = {0.6, 0.4, 0.5};
+    solid.radius = 0.3;
+    solid.length = 0.5;
+    solid.rounding = 0.1;
+    auto built = build(scene, {1});
+    INFO((built ? std::string() : built.error()));
+    REQUIRE(built.ok());
+    RunResult result;
+    PageScene page;
+    std::vector<std::vector<Index>> cells(1);
+    PageMeshOptions options;
+    options.triangle_cell = &cells[0];
+    add_page_mesh(page, built.value().world.mesh(built.value().bodies[0]), {"block"}, options);
+    RunOverlays overlays;
+    overlays.start({scene, built.value(), result}, page, cells);
+    // Every point lies on the surface that bodies touch, and the triangles face away from the middle.
+    const Obstacle& drawn = built.value().rigid_shapes[0];
+    int counted = 0;
+    for (std::size_t t = 0; t < page.triangle_part.size(); ++t) {
+      if (page.triangle_part[t] != 1) continue;
+      std::array<Vec3, 3> p;
+      for (std::size_t k = 0; k < 3; ++k) {
+        p[k] = page.rest[static_cast<std::size_t>(page.triangles[3 * t + k])];
+        CHECK(std::abs(distance_value(drawn, pose_of(drawn, 0).to_own(p[k]))) < 1e-12);
+      }
+      CHECK(dot(cross(p[1] - p[0], p[2] - p[0]), p[0] - drawn.position) > 0);
+      ++counted;
+    }
+    CHECK(counted > 300);
+  }
 }

@@ -3,16 +3,16 @@ import * as THREE from 'three';
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
-import { COLOR_TABLES, categoryColor, partColor } from './colors.js';
+import { categoryColor, colorTable, partColor } from './colors.js';
 import {
   bodyFragment, bodyVertex, capFragment, ghostFragment, ghostVertex, plainVertex, stencilFragment,
 } from './shaders.js';
 import { buildTopology, faceNormals, groupNormals, sliceCells, sliceSurface } from './topology.js';
 
-const NO_CUT = new THREE.Vector4(0, 0, 0, -1);
+const GRAY = [143, 143, 143];
 
-function tableTexture(bytes) {
-  const texture = new THREE.DataTexture(bytes, 256, 1);
+function tableTexture(name) {
+  const texture = new THREE.DataTexture(colorTable(name), 256, 1);
   texture.magFilter = THREE.LinearFilter;
   texture.minFilter = THREE.LinearFilter;
   texture.needsUpdate = true;
@@ -21,52 +21,90 @@ function tableTexture(bytes) {
 
 const attribute = (array, size) => new THREE.BufferAttribute(array, size).setUsage(THREE.DynamicDrawUsage);
 
+/** The vertices that are drawn: copies of the vertices of the run, one for each `source`. */
+class Points {
+  constructor(source, normalSource, part) {
+    Object.assign(this, { source, normalSource, part });
+    const count = source.length;
+    this.attributes = {
+      position: attribute(new Float32Array(count * 3), 3),
+      normal: attribute(new Float32Array(count * 3), 3),
+      value: attribute(new Float32Array(count), 1),
+      valid: attribute(new Float32Array(count).fill(1), 1),
+      solid: attribute(new Float32Array(count * 3), 3),
+    };
+  }
+
+  setShape(positions, normals) {
+    expand(this.attributes.position, positions, this.source);
+    expand(this.attributes.normal, normals, this.normalSource);
+  }
+
+  /** value: of the i-th point, NaN where there is none. Says whether all that count are finite. */
+  setValues(value, parts) {
+    const { value: values, valid } = this.attributes;
+    let finite = true;
+    for (let i = 0; i < this.source.length; ++i) {
+      const v = value(i);
+      const good = Number.isFinite(v);
+      values.array[i] = good ? v : 0;
+      valid.array[i] = good ? 1 : 0;
+      finite &&= good || parts[this.part[i]].obstacle === true;
+    }
+    values.needsUpdate = true;
+    if (!finite) valid.needsUpdate = true;
+    return finite;
+  }
+
+  setColors(color) {
+    const { solid } = this.attributes;
+    for (let i = 0; i < this.source.length; ++i) {
+      const rgb = color(i);
+      for (let k = 0; k < 3; ++k) solid.array[3 * i + k] = rgb[k] / 255;
+    }
+    solid.needsUpdate = true;
+  }
+}
+
+function expand(target, source, index) {
+  const out = target.array;
+  for (let i = 0, at = 0; i < index.length; ++i) {
+    const from = 3 * index[i];
+    out[at++] = source[from];
+    out[at++] = source[from + 1];
+    out[at++] = source[from + 2];
+  }
+  target.needsUpdate = true;
+}
+
 export class Body {
   constructor(run) {
     this.run = run;
     this.object = new THREE.Group();
-    this.tables = Object.fromEntries(Object.entries(COLOR_TABLES).map(([k, v]) => [k, tableTexture(v)]));
-    const { triangles, trianglePart, edgeMask, rest } = run;
+    this.tables = {};
+    const { triangles, trianglePart, rest } = run;
     this.parts = run.head.parts;
+    this.colors = this.parts.map(partColor);
     this.topology = buildTopology(rest, triangles, trianglePart, this.parts.length);
     this.faces = new Float32Array(triangles.length);
     this.normals = new Float32Array(this.topology.groupCount * 3);
-
-    // Corners are not shared between triangles: creases, edges and values of triangles need their own.
-    const corners = triangles.length;
-    this.position = attribute(new Float32Array(corners * 3), 3);
-    this.normal = attribute(new Float32Array(corners * 3), 3);
-    this.value = attribute(new Float32Array(corners), 1);
-    this.valid = attribute(new Float32Array(corners).fill(1), 1);
-    this.solid = attribute(new Float32Array(corners * 3), 3);
-    const corner = new Float32Array(corners * 3);
-    for (let c = 0; c < corners; ++c) {
-      const f = Math.floor(c / 3);
-      for (let k = 0; k < 3; ++k) {
-        // Component k vanishes on the edge opposite to corner k; a hidden edge never vanishes.
-        const hidden = !(edgeMask[f] & (1 << ((k + 1) % 3)));
-        corner[3 * c + k] = hidden || c % 3 === k ? 1 : 0;
-      }
-    }
     this.uniforms = {
-      table: { value: this.tables.sequential },
+      table: { value: null },
       range: { value: new THREE.Vector2(0, 1) },
-      mode: { value: 1 },
-      cut: { value: NO_CUT.clone() },
-      edges: { value: 0 },
+      cut: { value: new THREE.Vector4(0, 0, 0, -1) },
+      edges: { value: 0.75 },
       upEye: { value: new THREE.Vector3(0, 1, 0) },
       pixel: { value: 1 },
     };
-    this.geometry = new THREE.BufferGeometry();
-    for (const name of ['position', 'normal', 'value', 'valid', 'solid']) this.geometry.setAttribute(name, this[name]);
-    this.geometry.setAttribute('corner', new THREE.BufferAttribute(corner, 3));
-    const material = new THREE.ShaderMaterial({
-      uniforms: this.uniforms, vertexShader: bodyVertex, fragmentShader: bodyFragment, side: THREE.DoubleSide,
-    });
-    this.add(new THREE.Mesh(this.geometry, material), 1);
+    this.shows = { field: false, categories: false, invalid: false, cut: false, edges: false, inside: false };
+    this.buildShared();
+    this.section = new THREE.Group();
+    this.section.visible = false;
+    this.ghost = new THREE.Group();
+    this.ghost.visible = false;
+    this.ghostColor = new THREE.Vector3();
+    this.object.add(this.section, this.ghost);
     this.setShape(run.rest);
-    this.buildSection();
-    this.buildGhost();
   }
 
   add(mesh, order, parent = this.object) {
@@ -76,20 +114,74 @@ export class Body {
     return mesh;
   }
 
-  partCorners(part) {
+  /** Corners of the triangles that `wanted` takes. */
+  cornersWhere(wanted) {
     const out = [];
     const { trianglePart } = this.run;
-    for (let f = 0; f < trianglePart.length; ++f) {
-      if (trianglePart[f] === part) out.push(3 * f, 3 * f + 1, 3 * f + 2);
-    }
+    for (let f = 0; f < trianglePart.length; ++f) if (wanted(trianglePart[f])) out.push(3 * f, 3 * f + 1, 3 * f + 2);
     return out;
+  }
+
+  /** A mesh for each kind of part, drawn from `points`; `vertex`: of a corner of a triangle. */
+  buildMeshes(points, vertex, extra = {}) {
+    const { closed } = this.topology;
+    const meshes = [];
+    for (const obstacle of [false, true]) {
+      for (const isClosed of [true, false]) {
+        const corners = this.cornersWhere((p) => (this.parts[p].obstacle === true) === obstacle && closed[p] === isClosed);
+        if (corners.length === 0) continue;
+        const geometry = new THREE.BufferGeometry();
+        for (const [name, a] of Object.entries({ ...points.attributes, ...extra })) geometry.setAttribute(name, a);
+        geometry.setIndex(corners.map(vertex));
+        const material = new THREE.ShaderMaterial({
+          uniforms: this.uniforms, vertexShader: bodyVertex, fragmentShader: bodyFragment, side: THREE.DoubleSide,
+        });
+        meshes.push({ mesh: this.add(new THREE.Mesh(geometry, material), 1), obstacle, closed: isClosed });
+      }
+    }
+    return { points, meshes };
+  }
+
+  /** Corners of one smooth group are one vertex: a sixth of the work of having each on its own. */
+  buildShared() {
+    const { triangles, trianglePart } = this.run;
+    const { group, groupCount } = this.topology;
+    const vertex = new Uint32Array(groupCount), part = new Uint16Array(groupCount);
+    group.forEach((g, c) => {
+      vertex[g] = triangles[c];
+      part[g] = trianglePart[Math.floor(c / 3)];
+    });
+    const points = new Points(vertex, Uint32Array.from({ length: groupCount }, (_, i) => i), part);
+    points.setColors((i) => this.colors[part[i]]);
+    this.shared = this.buildMeshes(points, (c) => group[c]);
+    this.views = [this.shared];
+  }
+
+  /** Edges of the mesh and values of triangles need corners of their own. */
+  get apart() {
+    if (this.apartMeshes) return this.apartMeshes;
+    const { triangles, trianglePart, edgeMask } = this.run;
+    const corners = triangles.length;
+    const corner = new Float32Array(corners * 3);
+    const part = new Uint16Array(corners);
+    for (let c = 0; c < corners; ++c) {
+      const f = Math.floor(c / 3);
+      part[c] = trianglePart[f];
+      for (let k = 0; k < 3; ++k) {
+        // Component k vanishes on the edge opposite to corner k; a hidden edge never vanishes.
+        const hidden = !(edgeMask[f] & (1 << ((k + 1) % 3)));
+        corner[3 * c + k] = hidden || c % 3 === k ? 1 : 0;
+      }
+    }
+    const points = new Points(triangles, this.topology.group, part);
+    points.setColors((i) => this.colors[part[i]]);
+    this.apartMeshes = this.buildMeshes(points, (c) => c, { corner: new THREE.BufferAttribute(corner, 3) });
+    this.views.push(this.apartMeshes);
+    return this.apartMeshes;
   }
 
   /** For each closed part: count back faces minus front faces, then fill where the count is not zero. */
   buildSection() {
-    this.section = new THREE.Group();
-    this.section.visible = false;
-    this.object.add(this.section);
     this.capMaterials = [];
     const stencilBase = {
       uniforms: { cut: this.uniforms.cut }, vertexShader: plainVertex, fragmentShader: stencilFragment,
@@ -102,15 +194,16 @@ export class Body {
     const front = count(THREE.FrontSide, THREE.DecrementWrapStencilOp);
     this.capGeometry = new THREE.BufferGeometry();
     this.capGeometry.setAttribute('position', attribute(new Float32Array(18), 3));
+    const { group, closed } = this.topology;
     this.parts.forEach((part, index) => {
-      if (!this.topology.closed[index]) return;
+      if (!closed[index]) return;
       const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute('position', this.position);
-      geometry.setIndex(this.partCorners(index));
+      geometry.setAttribute('position', this.shared.points.attributes.position);
+      geometry.setIndex(this.cornersWhere((p) => p === index).map((c) => group[c]));
       const order = 2 + index * 3;
       this.add(new THREE.Mesh(geometry, back), order, this.section);
       this.add(new THREE.Mesh(geometry, front), order + 0.5, this.section);
-      const color = new THREE.Vector3(...partColor(part, index)).multiplyScalar(1 / 255);
+      const color = new THREE.Vector3(...this.colors[index]).multiplyScalar(1 / 255);
       const material = new THREE.ShaderMaterial({
         uniforms: { color: { value: new THREE.Vector3() }, pixel: this.uniforms.pixel },
         vertexShader: plainVertex, fragmentShader: capFragment, side: THREE.DoubleSide,
@@ -129,87 +222,120 @@ export class Body {
     this.add(this.outline, 280, this.section);
     if (this.run.cells.length > 0) {
       this.sliceGeometry = new THREE.BufferGeometry();
-      const material = new THREE.ShaderMaterial({
-        uniforms: { ...this.uniforms, cut: { value: NO_CUT }, edges: { value: 0 } },
-        vertexShader: bodyVertex, fragmentShader: bodyFragment, side: THREE.DoubleSide,
+      this.sliceMaterial = new THREE.ShaderMaterial({
+        uniforms: this.uniforms, vertexShader: bodyVertex, fragmentShader: bodyFragment, side: THREE.DoubleSide,
       });
-      this.slice = this.add(new THREE.Mesh(this.sliceGeometry, material), 1, this.section);
+      this.slice = this.add(new THREE.Mesh(this.sliceGeometry, this.sliceMaterial), 1, this.section);
     }
   }
 
   buildGhost() {
-    const geometry = new THREE.BufferGeometry();
     const { rest, triangles } = this.run;
-    const normals = groupNormals(faceNormals(rest, triangles), this.topology);
-    const position = new Float32Array(triangles.length * 3);
-    const normal = new Float32Array(triangles.length * 3);
-    this.expand(position, rest, triangles);
-    this.expand(normal, normals, this.topology.group);
-    geometry.setAttribute('position', new THREE.BufferAttribute(position, 3));
-    geometry.setAttribute('normal', new THREE.BufferAttribute(normal, 3));
-    const base = { uniforms: { color: { value: new THREE.Vector3() } }, vertexShader: ghostVertex, transparent: true };
+    const points = new Points(this.shared.points.source, this.shared.points.normalSource, this.shared.points.part);
+    points.setShape(rest, groupNormals(faceNormals(rest, triangles), this.topology));
+    const geometry = new THREE.BufferGeometry();
+    for (const name of ['position', 'normal']) geometry.setAttribute(name, points.attributes[name]);
+    geometry.setIndex(Array.from(this.topology.group));
+    const base = { uniforms: { color: { value: this.ghostColor } }, vertexShader: ghostVertex, transparent: true };
     // Depth first, color second: only the nearest layer of the veil is seen.
     const depth = new THREE.ShaderMaterial({ ...base, fragmentShader: ghostFragment, colorWrite: false });
     const veil = new THREE.ShaderMaterial({ ...base, fragmentShader: ghostFragment, depthFunc: THREE.LessEqualDepth });
-    this.ghostColor = base.uniforms.color.value;
     depth.uniforms.color = veil.uniforms.color = base.uniforms.color;
-    this.ghost = new THREE.Group();
-    this.ghost.visible = false;
     this.add(new THREE.Mesh(geometry, depth), 400, this.ghost);
     this.add(new THREE.Mesh(geometry, veil), 401, this.ghost);
-    this.object.add(this.ghost);
   }
 
-  expand(target, source, index) {
-    for (let c = 0; c < index.length; ++c) {
-      const from = 3 * index[c];
-      target[3 * c] = source[from];
-      target[3 * c + 1] = source[from + 1];
-      target[3 * c + 2] = source[from + 2];
-    }
+  setGhost(on) {
+    if (on && this.ghost.children.length === 0) this.buildGhost();
+    this.ghost.visible = on;
+  }
+
+  setEdges(on) {
+    if (this.shows.edges === on) return;
+    this.shows.edges = on;
+    this.refresh();
+  }
+
+  /** Whether the camera is near enough to be inside the body, where back faces are seen. */
+  setInside(inside) {
+    if (this.shows.inside === inside) return;
+    this.shows.inside = inside;
+    this.refreshMaterials();
   }
 
   setShape(positions) {
     this.positions = positions;
     faceNormals(positions, this.run.triangles, this.faces);
     groupNormals(this.faces, this.topology, this.normals);
-    this.expand(this.position.array, positions, this.run.triangles);
-    this.expand(this.normal.array, this.normals, this.topology.group);
-    this.position.needsUpdate = this.normal.needsUpdate = true;
   }
 
-  /** values: one a vertex or a triangle by field.place; null for the solid color. */
+  /** Shows the shape set before. values: one a vertex or a triangle by field.place; null for the solid color. */
   setValues(field, values) {
-    const { triangles, trianglePart } = this.run;
+    this.field = field;
+    this.values = values;
     const categorical = field.categories.length > 0;
-    this.uniforms.mode.value = !values || categorical ? 1 : 0;
-    this.uniforms.table.value = this.tables[field.diverging ? 'diverging' : 'sequential'];
-    this.vertexValues = field.place === 'vertex' && !categorical ? values : null;
-    const gray = [143, 143, 143];
-    for (let c = 0; c < triangles.length; ++c) {
-      const f = Math.floor(c / 3);
-      const value = values ? values[field.place === 'triangle' ? f : triangles[c]] : 0;
-      const finite = Number.isFinite(value);
-      const part = this.parts[trianglePart[f]];
-      if (this.uniforms.mode.value === 0) {
-        this.value.array[c] = finite ? value : 0;
-        this.valid.array[c] = part.obstacle ? -1 : finite ? 1 : 0;
-      }
-      if (this.uniforms.mode.value === 1 || part.obstacle) {
-        let rgb = partColor(part, trianglePart[f]);
-        if (categorical && !part.obstacle) rgb = finite ? categoryColor(Math.round(value)) : gray;
-        this.solid.array.set(rgb.map((v) => v / 255), 3 * c);
-      }
+    this.shows.field = values !== null && !categorical;
+    this.shows.categories = values !== null && categorical;
+    this.vertexValues = field.place === 'vertex' && this.shows.field ? values : null;
+    if (this.shows.field) {
+      const name = field.diverging ? 'diverging' : 'sequential';
+      this.tables[name] ??= tableTexture(name);
+      this.uniforms.table.value = this.tables[name];
     }
-    this.value.needsUpdate = this.valid.needsUpdate = this.solid.needsUpdate = true;
+    this.refresh();
+  }
+
+  /** Puts shape and colors into the points that are drawn, whichever these are now. */
+  refresh() {
+    const { field, values, shows, run, colors } = this;
+    const apart = shows.edges || shows.categories || (shows.field && field.place === 'triangle');
+    const view = apart ? this.apart : this.shared;
+    for (const v of this.views) for (const { mesh } of v.meshes) mesh.visible = v === view;
+    this.view = view;
+    const { points } = view;
+    points.setShape(this.positions, this.normals);
+    // The section is cut out of the shared points.
+    if (apart && shows.cut) this.shared.points.setShape(this.positions, this.normals);
+    shows.invalid = false;
+    if (shows.field) {
+      const { source } = points;
+      const read = field.place === 'triangle' ? (i) => values[Math.floor(i / 3)] : (i) => values[source[i]];
+      shows.invalid = !points.setValues(read, this.parts);
+    }
+    if (apart) {
+      const { trianglePart, triangles } = run;
+      points.setColors((i) => {
+        const f = Math.floor(i / 3);
+        if (!shows.categories || this.parts[trianglePart[f]].obstacle) return colors[trianglePart[f]];
+        const value = values[field.place === 'triangle' ? f : triangles[i]];
+        return Number.isFinite(value) ? categoryColor(Math.round(value)) : GRAY;
+      });
+    }
+    this.refreshMaterials();
+  }
+
+  refreshMaterials() {
+    const { shows } = this;
+    for (const { mesh, obstacle, closed } of this.view.meshes) {
+      const field = shows.field && !obstacle;
+      // Of a closed surface the back is seen only through a cut or from within.
+      const side = closed && !shows.cut && !shows.inside ? THREE.FrontSide : THREE.DoubleSide;
+      define(mesh.material, { FIELD: field, INVALID: field && shows.invalid, CUT: shows.cut, EDGES: shows.edges }, side);
+    }
+    if (this.slice) define(this.sliceMaterial, { FIELD: true, INVALID: true }, THREE.DoubleSide);
   }
 
   setRange(low, high) { this.uniforms.range.value.set(low, high); }
 
   /** plane: null, or [nx, ny, nz, d] that keeps n.x + d <= 0. */
   setCut(plane) {
+    const { shows } = this;
     this.section.visible = plane !== null;
-    if (!plane) { this.uniforms.cut.value.copy(NO_CUT); return; }
+    const changed = shows.cut !== (plane !== null);
+    shows.cut = plane !== null;
+    if (changed) this.refresh();
+    if (!plane) return;
+    if (!this.capMaterials) this.buildSection();
     this.uniforms.cut.value.set(...plane);
     const n = new THREE.Vector3(...plane.slice(0, 3));
     const origin = n.clone().multiplyScalar(-plane[3]);
@@ -221,7 +347,7 @@ export class Body {
     this.capGeometry.attributes.position.needsUpdate = true;
     for (const { material, color, obstacle } of this.capMaterials) {
       // Gray beside a field: a colored fill could be read as a value.
-      const gray = this.uniforms.mode.value === 0 && !obstacle;
+      const gray = shows.field && !obstacle;
       material.uniforms.color.value.set(...(gray ? [0.8, 0.81, 0.83] : color.toArray().map((c) => 0.25 + 0.72 * c)));
     }
     const segments = sliceSurface(this.run.triangles, this.positions, plane);
@@ -251,8 +377,17 @@ export class Body {
     set('normal', normal, 3);
     set('value', values, 1);
     set('valid', valid, 1);
-    set('solid', new Float32Array(count * 3), 3);
-    set('corner', new Float32Array(count * 3), 3);
     this.sliceGeometry.setDrawRange(0, count);
   }
+}
+
+/** The variant of the shader that does what is asked and no more. */
+function define(material, wanted, side) {
+  const names = Object.keys(wanted).filter((name) => wanted[name]);
+  const variant = `${names.join()} ${side}`;
+  if (material.userData.variant === variant) return;
+  material.userData.variant = variant;
+  material.defines = Object.fromEntries(names.map((name) => [name, '']));
+  material.side = side;
+  material.needsUpdate = true;
 }

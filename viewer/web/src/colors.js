@@ -59,7 +59,11 @@ const table = (stops) => {
   return out;
 };
 
-export const COLOR_TABLES = { sequential: table(SEQUENTIAL), diverging: table(DIVERGING) };
+const STOPS = { sequential: SEQUENTIAL, diverging: DIVERGING };
+const tables = {};
+
+/** 256 colors as RGBA bytes; made when first asked for. */
+export const colorTable = (name) => (tables[name] ??= table(STOPS[name]));
 
 // Solid colors of parts and categories: equal weight, told apart without color vision by order of lightness.
 const CATEGORY = [
@@ -85,7 +89,7 @@ export function partColor(part, index) {
 
 /** CSS gradient of a table, low at the start. */
 export function gradient(name, direction) {
-  const t = COLOR_TABLES[name];
+  const t = colorTable(name);
   const stops = [];
   for (let i = 0; i <= 32; ++i) {
     const k = Math.round((i / 32) * 255) * 4;

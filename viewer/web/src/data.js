@@ -6,7 +6,9 @@ const FIELD_LEVELS = 4095;
 
 /** Base64 of a zlib stream to its bytes. */
 async function inflate(base64) {
-  const packed = Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+  const text = atob(base64);
+  const packed = new Uint8Array(text.length);
+  for (let i = 0; i < packed.length; ++i) packed[i] = text.charCodeAt(i);
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
@@ -32,6 +34,13 @@ class BlockReader {
     const planes = this.take(count * width);
     const out = new ArrayType(count);
     let value = 0;
+    if (width === 2) {
+      for (let i = 0; i < count; ++i) {
+        value = (value + (planes[i] | (planes[count + i] << 8))) & 65535;
+        out[i] = value;
+      }
+      return out;
+    }
     for (let i = 0; i < count; ++i) {
       let step = 0;
       for (let k = width - 1; k >= 0; --k) step = (step << 8) | planes[k * count + i];
@@ -137,7 +146,13 @@ export class RunData {
     return { index, info, codes, fields, lines, probes, contacts };
   }
 
-  positions(frame) { return this.toWorld(frame.codes, frame.info.box); }
+  /** Kept for the frame asked for last: its shape, its displacements and its section all need them. */
+  positions(frame) {
+    if (this.placed?.index !== frame.index) {
+      this.placed = { index: frame.index, points: this.toWorld(frame.codes, frame.info.box) };
+    }
+    return this.placed.points;
+  }
 
   /** Values of a field in one frame (physical units; NaN where the run had none). */
   values(frame, field) {

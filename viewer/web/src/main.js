@@ -66,7 +66,7 @@ class Viewer {
       this.stage.look(options.view, options.zoom);
       this.openCut();
       this.showDisplay();
-      this.stage.draw();
+      this.stage.open();
     }
   }
 
@@ -167,8 +167,8 @@ class Viewer {
   showDisplay() {
     const { state, stage } = this;
     if (!stage) return;
-    stage.body.ghost.visible = state.ghost;
-    stage.body.uniforms.edges.value = state.edges ? 0.75 : 0;
+    stage.body.setGhost(state.ghost);
+    stage.body.setEdges(state.edges);
     stage.body.setCut(this.cutPlane());
     stage.invalidate();
   }

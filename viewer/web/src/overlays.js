@@ -1,12 +1,45 @@
 // Cables, probes and contacts: what is drawn over the body, faintly where the body hides it.
 import * as THREE from 'three';
-import { Line2 } from 'three/addons/lines/Line2.js';
-import { LineGeometry } from 'three/addons/lines/LineGeometry.js';
 import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
+import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
+import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 import { colorOr } from './colors.js';
 import { dotFragment, dotVertex } from './shaders.js';
 
 const HIDDEN_OPACITY = 0.35;
+
+// Buffers are written to while they are long enough: new ones every frame would cost far more than drawing.
+function fillPoints(geometry, values) {
+  const old = geometry.getAttribute('position');
+  if (old && old.array.length >= values.length) {
+    old.array.set(values);
+    old.needsUpdate = true;
+  } else {
+    const array = new Float32Array(old ? 2 * values.length : values.length);
+    array.set(values);
+    geometry.dispose();
+    geometry.setAttribute('position', new THREE.BufferAttribute(array, 3).setUsage(THREE.DynamicDrawUsage));
+  }
+  geometry.setDrawRange(0, values.length / 3);
+}
+
+/** A line through these points as pairs of ends. */
+function segments(points) {
+  const out = new Float32Array(2 * (points.length - 3));
+  for (let i = 0; i + 5 < points.length; i += 3) for (let k = 0; k < 6; ++k) out[2 * i + k] = points[i + k];
+  return out;
+}
+
+function fillLine(geometry, values) {
+  const buffer = geometry.getAttribute('instanceStart')?.data;
+  if (buffer?.array.length === values.length) {
+    buffer.array.set(values);
+    buffer.needsUpdate = true;
+    return;
+  }
+  geometry.dispose();
+  geometry.setPositions(values);
+}
 
 const finitePoints = (points) => {
   const out = [];
@@ -30,17 +63,21 @@ class Dots {
       },
       vertexShader: dotVertex, fragmentShader: dotFragment, transparent: true, depthTest, depthWrite: false,
     }));
-    this.materials.forEach((material) => {
+    this.objects = this.materials.map((material) => {
       const dots = new THREE.Points(this.geometry, material);
       dots.frustumCulled = false;
       dots.renderOrder = material.depthTest ? 302 : 301;
+      dots.visible = false;
       parent.add(dots);
+      return dots;
     });
   }
 
   set(points) {
-    this.geometry.dispose();
-    this.geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array(finitePoints(points)), 3));
+    const finite = finitePoints(points);
+    for (const object of this.objects) object.visible = finite.length > 0;
+    if (finite.length === 0) return;
+    fillPoints(this.geometry, finite);
   }
 
   resize(pixelRatio) {
@@ -67,13 +104,15 @@ export class Overlays {
         new LineMaterial({ ...material, color: 0x1a1d22, linewidth: 5.2, depthWrite: false, ...nearer }),
         new LineMaterial({ ...material, ...nearer }),
       ];
-      return materials.map((m, k) => {
-        const object = new Line2(new LineGeometry(), m);
+      const geometry = new LineSegmentsGeometry();
+      const objects = materials.map((m, k) => {
+        const object = new LineSegments2(geometry, m);
         object.frustumCulled = false;
         object.renderOrder = 290 + k;
         this.object.add(object);
         return object;
       });
+      return { geometry, objects };
     });
     this.contacts = new Dots(this.object, [232, 120, 30], 9);
     this.probes = new Dots(this.object, [20, 24, 30], 12);
@@ -90,13 +129,9 @@ export class Overlays {
     this.frame = frame;
     frame.lines.forEach((points, index) => {
       const finite = finitePoints(points);
-      for (const object of this.lines[index]) {
-        object.visible = finite.length >= 6;
-        if (!object.visible) continue;
-        object.geometry.dispose();
-        object.geometry = new LineGeometry();
-        object.geometry.setPositions(finite);
-      }
+      const { geometry, objects } = this.lines[index];
+      for (const object of objects) object.visible = finite.length >= 6;
+      if (finite.length >= 6) fillLine(geometry, segments(finite));
     });
     this.contacts.set(frame.contacts);
     this.probes.set(frame.probes);

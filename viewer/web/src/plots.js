@@ -34,31 +34,56 @@ export class Plots {
     this.onPick = onPick;
     this.time = run.head.frames[0]?.time ?? null;
     this.plots = [];
+    this.waiting = new Map();
     this.observer = new ResizeObserver(() => this.resize());
+    // A chart is drawn when it comes near the window: those below it cost nothing while the page opens.
+    this.near = new IntersectionObserver((entries) => {
+      for (const { target, isIntersecting } of entries) if (isIntersecting) this.draw(target);
+    }, { rootMargin: '40px' });
     this.build();
   }
 
   build() {
     this.plots.forEach((p) => p.plot.destroy());
     this.observer.disconnect();
+    this.near.disconnect();
     this.plots = [];
+    this.waiting.clear();
     this.host.replaceChildren();
     const css = getComputedStyle(document.documentElement);
     const color = (name) => css.getPropertyValue(name).trim();
-    this.theme = { text: color('--muted'), grid: color('--grid'), mark: color('--accent'), palette: color('--dark') === '1' ? DARK : LIGHT };
+    this.theme = { text: color('--muted'), grid: color('--grid'), palette: color('--dark') === '1' ? DARK : LIGHT };
     for (const chart of charts(this.run.head.series)) {
       const body = el('div', { class: 'plot-body' });
       const card = el('figure', { class: 'card plot' }, el('figcaption', {}, chart.name), body);
       this.host.append(card);
       const drawn = chart.series.filter((s) => s.x.length > 0 && s.y.some(Number.isFinite));
-      const dropped = chart.series.filter((s) => !drawn.includes(s));
-      if (drawn.length > 0) this.plots.push({ body, plot: this.plot({ ...chart, series: drawn }, body) });
-      const missing = dropped.map((s) => s.name).join(', ');
+      const missing = chart.series.filter((s) => !drawn.includes(s)).map((s) => s.name).join(', ');
+      if (drawn.length > 0) {
+        this.waiting.set(body, { ...chart, series: drawn });
+        body.style.minHeight = `${HEIGHT + 30}px`; // so that nothing moves when it is drawn
+        this.near.observe(body);
+      }
       if (missing) body.append(el('p', { class: 'empty' }, `No finite value: ${missing}`));
-      this.observer.observe(body);
     }
-    if (this.time !== null) this.setTime(this.time);
-    this.host.hidden = this.plots.length === 0 && this.run.head.series.length === 0;
+    this.host.hidden = this.run.head.series.length === 0;
+  }
+
+  draw(body) {
+    const chart = this.waiting.get(body);
+    if (!chart) return;
+    this.waiting.delete(body);
+    this.near.unobserve(body);
+    body.style.minHeight = '';
+    const plot = this.plot(chart, body);
+    this.plots.push({ body, plot });
+    this.observer.observe(body);
+    if (this.time !== null) this.readAt(plot);
+  }
+
+  /** For pictures of the whole page. */
+  drawAll() {
+    for (const body of [...this.waiting.keys()]) this.draw(body);
   }
 
   plot(chart, body) {
@@ -127,30 +152,27 @@ export class Plots {
         }),
       ],
       hooks: {
-        draw: [(u) => this.mark(u)],
+        draw: [(u) => this.placeMarker(u)],
         setCursor: [(u) => { if (u.cursor.left < 0) this.readAt(u); }],
-        ready: [(u) => u.over.addEventListener('click', () => {
-          if (u.cursor.left >= 0) this.onPick(u.posToVal(u.cursor.left, 'x'));
-        })],
+        ready: [(u) => {
+          u.marker = el('div', { class: 'marker' });
+          u.over.append(u.marker);
+          this.placeMarker(u);
+          u.over.addEventListener('click', () => {
+            if (u.cursor.left >= 0) this.onPick(u.posToVal(u.cursor.left, 'x'));
+          });
+        }],
       },
     }, data, body);
   }
 
-  /** The vertical line at the time of the frame. */
-  mark(u) {
-    if (this.time === null) return;
-    const x = Math.round(u.valToPos(this.time, 'x', true)) + 0.5;
-    const { left, top, width, height } = u.bbox;
-    if (!(x >= left - 1 && x <= left + width + 1)) return;
-    const { ctx } = u;
-    ctx.save();
-    ctx.strokeStyle = this.theme.mark;
-    ctx.lineWidth = 1.5 * (window.devicePixelRatio || 1);
-    ctx.beginPath();
-    ctx.moveTo(x, top);
-    ctx.lineTo(x, top + height);
-    ctx.stroke();
-    ctx.restore();
+  /** The vertical line at the time of the frame: an element, so that playing draws no chart again. */
+  placeMarker(u) {
+    if (!u.marker) return;
+    const x = this.time === null ? NaN : u.valToPos(this.time, 'x');
+    const inside = x >= -1 && x <= u.bbox.width / uPlot.pxRatio + 1;
+    u.marker.hidden = !inside;
+    if (inside) u.marker.style.transform = `translateX(${Math.round(x)}px)`;
   }
 
   /** Values at the time shown stand in the key while nobody points at the chart. */
@@ -165,7 +187,7 @@ export class Plots {
   setTime(time) {
     this.time = time;
     for (const { plot } of this.plots) {
-      plot.redraw(false, false);
+      this.placeMarker(plot);
       this.readAt(plot);
     }
   }

@@ -1,88 +1,121 @@
 // The look of the body: soft studio light fixed to the camera, so that the colors of a field stay readable
 // from every side, with mesh edges drawn by the fragment shader.
+//
+// Each picture pays for what it shows: FIELD colors by value (otherwise by the solid color), INVALID paints
+// values that are not finite gray, CUT takes one side of the plane away, EDGES draws the mesh. Without a
+// graphics card every number that is carried from the corners of a triangle to its pixels costs time.
 
 // The position is interpolated at the covered part of a pixel (centroid): taken at its middle it would lie
 // outside of triangles seen edge-on, and the cut would leave specks along the outline.
 export const bodyVertex = /* glsl */ `
-attribute float value;
-attribute float valid;
-attribute vec3 corner;
-attribute vec3 solid;
-centroid varying vec3 vWorld;
 varying vec3 vEye;
 varying vec3 vNormal;
-varying vec3 vCorner;
-varying vec3 vSolid;
+#ifdef FIELD
+attribute float value;
 varying float vValue;
+#else
+attribute vec3 solid;
+varying vec3 vSolid;
+#endif
+#ifdef INVALID
+attribute float valid;
 varying float vValid;
+#endif
+#ifdef CUT
+centroid varying vec3 vWorld;
+#endif
+#ifdef EDGES
+attribute vec3 corner;
+varying vec3 vCorner;
+#endif
 void main() {
-  vWorld = position;
   vec4 eye = modelViewMatrix * vec4(position, 1.0);
   vEye = eye.xyz;
   vNormal = normalMatrix * normal;
-  vCorner = corner;
-  vSolid = solid;
+#ifdef FIELD
   vValue = value;
+#else
+  vSolid = solid;
+#endif
+#ifdef INVALID
   vValid = valid;
+#endif
+#ifdef CUT
+  vWorld = position;
+#endif
+#ifdef EDGES
+  vCorner = corner;
+#endif
   gl_Position = projectionMatrix * eye;
 }`;
 
 export const bodyFragment = /* glsl */ `
-uniform sampler2D table;
-uniform vec2 range;      // values at the ends of the color table
-uniform float mode;      // 0 field, 1 solid color of the part
-uniform vec4 cut;        // kept where dot(cut.xyz, p) + cut.w <= 0
-uniform float edges;     // strength of mesh edges
 uniform vec3 upEye;      // world up in camera space
-uniform float pixel;     // device pixels a CSS pixel
-centroid varying vec3 vWorld;
 varying vec3 vEye;
 varying vec3 vNormal;
-varying vec3 vCorner;
-varying vec3 vSolid;
+#ifdef FIELD
+uniform sampler2D table;
+uniform vec2 range;      // values at the ends of the color table
 varying float vValue;
+#else
+varying vec3 vSolid;
+#endif
+#ifdef INVALID
 varying float vValid;
-
-vec3 toLinear(vec3 c) { return pow(c, vec3(2.2)); }
-vec3 toDisplay(vec3 c) { return pow(max(c, 0.0), vec3(1.0 / 2.2)); }
+#endif
+#ifdef CUT
+uniform vec4 cut;        // kept where dot(cut.xyz, p) + cut.w <= 0
+centroid varying vec3 vWorld;
+#endif
+#ifdef EDGES
+uniform float edges;     // strength of mesh edges
+uniform float pixel;     // device pixels a CSS pixel
+varying vec3 vCorner;
+#endif
 
 void main() {
+#ifdef CUT
   if (dot(cut.xyz, vWorld) + cut.w > 0.0) discard;
+#endif
+#ifdef FIELD
+  float s = (vValue - range.x) / max(range.y - range.x, 1e-30);
+  vec3 base = texture2D(table, vec2(clamp(s, 0.0, 1.0) * (255.0 / 256.0) + 0.5 / 256.0, 0.5)).rgb;
+#else
   vec3 base = vSolid;
-  if (mode < 0.5) {
-    float s = (vValue - range.x) / max(range.y - range.x, 1e-30);
-    base = texture2D(table, vec2(clamp(s, 0.0, 1.0) * (255.0 / 256.0) + 0.5 / 256.0, 0.5)).rgb;
-    if (vValid < 0.999) base = vec3(0.56);
-    if (vValid < -0.5) base = vSolid;  // an obstacle
-  }
-  base = toLinear(base);
+#endif
+#ifdef INVALID
+  if (vValid < 0.999) base = vec3(0.56);
+#endif
+  base *= base;  // light adds up where values are linear; 2 is near enough to the 2.2 of a display
 
   vec3 n = normalize(vNormal);
   vec3 v = normalize(-vEye);
-  if (dot(n, v) < 0.0) n = -n;
-  vec3 key = normalize(vec3(-0.45, 0.75, 0.65));
-  vec3 fill = normalize(vec3(0.8, 0.05, 0.5));
+  float facing = dot(n, v);
+  if (facing < 0.0) { n = -n; facing = -facing; }
+  const vec3 key = vec3(-0.4129, 0.6882, 0.5965);
+  const vec3 fill = vec3(0.8468, 0.0529, 0.5293);
   float sky = 0.5 + 0.5 * dot(n, upEye);
   float lit = 0.40 * mix(0.62, 1.12, sky)
             + 0.52 * max(dot(n, key), 0.0)
             + 0.22 * max(dot(n, fill), 0.0)
-            + 0.20 * max(dot(n, v), 0.0);
+            + 0.20 * facing;
   vec3 color = base * lit;
-  vec3 h = normalize(key + v);
-  color += 0.085 * pow(max(dot(n, h), 0.0), 42.0);
+  float h = max(dot(n, normalize(key + v)), 0.0);
+  float h2 = h * h, h8 = h2 * h2 * h2 * h2, h32 = h8 * h8 * h8 * h8;
+  color += 0.085 * h2 * h8 * h32;
   // A darker rim separates overlapping folds of the same color.
-  float rim = pow(1.0 - max(dot(n, v), 0.0), 3.5);
-  color *= 1.0 - 0.30 * rim;
+  float rim = 1.0 - facing;
+  color *= 1.0 - 0.30 * rim * rim * rim * sqrt(rim);
 
-  if (edges > 0.0) {
-    vec3 w = fwidth(vCorner);
-    vec3 d = smoothstep(vec3(0.25), vec3(1.15), vCorner / max(w * pixel, 1e-6));
-    float line = 1.0 - min(d.x, min(d.y, d.z));
-    // Triangles of few pixels would turn the picture black: fade their edges out.
-    line *= 1.0 - smoothstep(0.12, 0.4, max(w.x, max(w.y, w.z)) * pixel);
-    color = mix(color, color * 0.22, edges * line);
-  }
-  gl_FragColor = vec4(toDisplay(color), 1.0);
+#ifdef EDGES
+  vec3 w = fwidth(vCorner);
+  vec3 d = smoothstep(vec3(0.25), vec3(1.15), vCorner / max(w * pixel, 1e-6));
+  float line = 1.0 - min(d.x, min(d.y, d.z));
+  // Triangles of few pixels would turn the picture black: fade their edges out.
+  line *= 1.0 - smoothstep(0.12, 0.4, max(w.x, max(w.y, w.z)) * pixel);
+  color = mix(color, color * 0.22, edges * line);
+#endif
+  gl_FragColor = vec4(sqrt(max(color, 0.0)), 1.0);
 }`;
 
 /** Marks inside and outside behind the cut plane; writes no color. */

@@ -10,6 +10,24 @@ const VIEWS = {
 export const VIEW_NAMES = Object.keys(VIEWS);
 const AXIS_COLORS = { x: '#d6453d', y: '#3d9a50', z: '#3b74d1' };
 
+/** Left, right, bottom and top of the points on the picture, -1 to 1. */
+function extent(lists, m) {
+  let [l, r, b, t] = [Infinity, -Infinity, Infinity, -Infinity];
+  for (const points of lists) {
+    for (let i = 0; i < points.length; i += 3) {
+      const x = points[i], y = points[i + 1], z = points[i + 2];
+      const w = m[3] * x + m[7] * y + m[11] * z + m[15];
+      const across = (m[0] * x + m[4] * y + m[8] * z + m[12]) / w;
+      const up = (m[1] * x + m[5] * y + m[9] * z + m[13]) / w;
+      if (across < l) l = across;
+      if (across > r) r = across;
+      if (up < b) b = up;
+      if (up > t) t = up;
+    }
+  }
+  return [l, r, b, t];
+}
+
 export class Stage {
   constructor(run, host) {
     this.run = run;
@@ -33,20 +51,27 @@ export class Stage {
     this.triad = host.querySelector('.triad');
     this.scene.add(this.body.object, this.overlays.object);
     this.fitPoints = [run.rest];
-    new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
   }
 
+  /** From here on every change is drawn; what led up to the first picture was not worth one of its own. */
+  open() {
+    this.opened = true;
+    this.draw();
+    new ResizeObserver(() => this.resize()).observe(this.host);
+  }
+
   invalidate() {
-    if (this.pending) return;
+    if (this.pending || !this.opened) return;
     this.pending = true;
     requestAnimationFrame(() => { this.pending = false; this.draw(); });
   }
 
   resize() {
     const { clientWidth: width, clientHeight: height } = this.host;
-    if (width === 0 || height === 0) return;
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
+    if (width === 0 || height === 0 || this.size === `${width} ${height} ${ratio}`) return;
+    this.size = `${width} ${height} ${ratio}`;
     this.renderer.setPixelRatio(ratio);
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
@@ -54,13 +79,15 @@ export class Stage {
     this.body.uniforms.pixel.value = ratio;
     this.overlays.resize(ratio);
     if (this.view) this.look(this.view, this.zoom); // until the reader has moved the camera
-    this.draw();
+    if (this.opened) this.draw();
   }
 
   draw() {
     const up = this.body.uniforms.upEye.value.copy(this.camera.up);
     this.camera.updateMatrixWorld();
     up.transformDirection(this.camera.matrixWorldInverse);
+    // All of it lies in a sphere of radius one.
+    this.body.setInside(this.camera.position.length() < 1 + 2 * this.camera.near);
     this.renderer.render(this.scene, this.camera);
     this.overlays.placeLabels(this.camera, this.host.clientWidth, this.host.clientHeight);
     this.drawTriad();
@@ -94,7 +121,8 @@ export class Stage {
     const { camera, controls } = this;
     const target = new THREE.Vector3();
     let distance = 5;
-    const right = new THREE.Vector3(), upward = new THREE.Vector3(), p = new THREE.Vector3();
+    const right = new THREE.Vector3(), upward = new THREE.Vector3();
+    const projection = new THREE.Matrix4();
     const width = Math.max(1, this.host.clientWidth);
     const legend = this.host.querySelector('.legend');
     const reserved = legend && !legend.hidden ? Math.min(0.3, 105 / width) : 0;
@@ -103,14 +131,8 @@ export class Stage {
       camera.lookAt(target);
       camera.updateMatrixWorld();
       camera.updateProjectionMatrix();
-      let [l, r, b, t] = [Infinity, -Infinity, Infinity, -Infinity];
-      for (const points of this.fitPoints) {
-        for (let i = 0; i < points.length; i += 3) {
-          p.fromArray(points, i).project(camera);
-          l = Math.min(l, p.x); r = Math.max(r, p.x);
-          b = Math.min(b, p.y); t = Math.max(t, p.y);
-        }
-      }
+      projection.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+      const [l, r, b, t] = extent(this.fitPoints, projection.elements);
       if (!(r >= l)) break;
       const halfHeight = distance * Math.tan((camera.fov * Math.PI) / 360);
       right.setFromMatrixColumn(camera.matrixWorld, 0);
