@@ -213,7 +213,9 @@ Kkt::Outcome Kkt::eliminate_border(const Values& values, Outcome outcome) {
   for (std::size_t k = 0; k < nb; ++k) {
     const auto z = std::span(border_solution_).subspan(k * size, size);
     border_column(s.bordered_rows()[k], rhs_);
-    if (!solver_->solve(rhs_, z).ok) {
+    const SolveReport solved = solver_->solve(rhs_, z);
+    inertia_was_wrong_ = inertia_was_wrong_ || solved.inertia_changed;
+    if (!solved.ok) {
       outcome.status = FactorStatus::singular;
       outcome.message = "the system without its bordered rows is singular";
       return outcome;
@@ -312,9 +314,16 @@ Kkt::Outcome Kkt::factor(const Assembly& assembly, const Values& values, StageSe
   }
   const Stopwatch watch(seconds.factor);
   solver_->set_scale(scale_);
+  outcome = factor_scaled(values);
+  return inertia_was_wrong_ ? factor_scaled(values) : outcome;
+}
+
+Kkt::Outcome Kkt::factor_scaled(const Values& values) {
+  const System& s = *system_;
+  inertia_was_wrong_ = false;
   const FactorReport f = solver_->factor(values_);
   factor_nonzeros_ = f.factor_nonzeros;
-  outcome = {f.status, f.negative_pivots, f.message};
+  Outcome outcome{f.status, f.negative_pivots, f.message};
   if (f.status != FactorStatus::ok) return outcome;
   // A condensed row has its negative pivot in -C, eliminated first; a dual one in its Schur complement, whose
   // sign is right whenever that of the (augmented) stiffness is.
@@ -330,6 +339,7 @@ bool Kkt::solve_matrix(StageSeconds& seconds) {
   const SolveReport solved = solver_->solve(rhs_, solution_);
   residual_ = std::max(residual_, solved.residual);
   linear_iterations_ += solved.iterations;
+  inertia_was_wrong_ = inertia_was_wrong_ || solved.inertia_changed;
   const std::size_t nb = s.bordered_rows().size(), size = at(s.kkt().size);
   if (nb == 0) return solved.ok;
   // dlambda_b = S^-1 (g_b - B^T A^-1 f), u = A^-1 f - A^-1 B dlambda_b.

@@ -100,8 +100,18 @@ Result<void> World::Impl::make_method(SystemParts parts) {
     return Error{"world: method position_based has no answer for this scene: " + what +
                  "; use another method"};
   }
-  auto solver = make_linear_solver(static_cast<SolverKind>(options.solver), large);
-  if (!solver) return Error{"world: this build has no linear solver"};
+  if (static_cast<SolverKind>(options.solver) == SolverKind::cholmod_supernodal && !system->kept_rows().empty()) {
+    return Error{"world: solver cholmod_supernodal factors positive definite matrices, and " +
+                 std::to_string(system->kept_rows().size()) +
+                 " rows are in the matrix; use method condensation with element rows and nu < 0.5, method "
+                 "dual_gradients or augmented_gradients, or another solver"};
+  }
+  // Next to a limit point the sign of a vanishing eigenvalue counts.
+  SolverWishes wishes;
+  wishes.prefer_iterative = large;
+  wishes.single_precision = !follows;
+  auto solver = make_linear_solver(static_cast<SolverKind>(options.solver), wishes);
+  if (!solver) return Error{"world: this build does not have the linear solver that is asked for"};
   if (ascent) {
     DualAscentOptions ascent_options;
     ascent_options.augmented = ascent_options.scaled = options.method == Method::augmented_ascent;
