@@ -1,7 +1,9 @@
 // Times of every linear solver backend on the saddle matrix of a stabilized P1-P1 block at nu = 0.5.
 //
 //   solvers_bench [--sizes 1600,8000,32000] [--repeats 7] [--blas-threads 1] [--all] [--sweep] [--cpu]
+//   [--stiffness]
 //
+// --stiffness takes the displacement block alone, what a displacement-only method factors;
 // --all also runs the backends that take seconds at a size; --sweep tries the settings of MUMPS instead;
 // --cpu takes the processor time of the process instead of the wall clock, which a busy machine disturbs
 // less.
@@ -22,6 +24,7 @@
 #include "engine/linear_solver.h"
 #include "engine/solvers/cholmod_solver.h"
 #include "engine/solvers/eigen_solver.h"
+#include "engine/solvers/multifrontal_solver.h"
 #include "engine/solvers/mumps_solver.h"
 #include "engine/solvers/ordering.h"
 
@@ -130,6 +133,26 @@ System block(int nx, int ny, int nz) {
   return s;
 }
 
+// The displacement block.
+System stiffness_of(const System& s) {
+  System k;
+  const auto first_row = std::find(s.pattern.multiplier.begin(), s.pattern.multiplier.end(), std::uint8_t{1});
+  k.pattern.size = static_cast<Index>(first_row - s.pattern.multiplier.begin());
+  k.pattern.column_start = {0};
+  for (Index c = 0; c < k.pattern.size; ++c) {
+    for (auto e = s.pattern.column_start[at(c)]; e < s.pattern.column_start[at(c) + 1]; ++e) {
+      if (s.pattern.row[static_cast<std::size_t>(e)] >= k.pattern.size) continue;
+      k.pattern.row.push_back(s.pattern.row[static_cast<std::size_t>(e)]);
+      k.values.push_back(s.values[static_cast<std::size_t>(e)]);
+    }
+    k.pattern.column_start.push_back(static_cast<std::int64_t>(k.values.size()));
+    k.pattern.group.push_back(c / 3);
+    k.pattern.multiplier.push_back(0);
+  }
+  k.pattern.groups = k.pattern.size / 3;
+  return k;
+}
+
 struct Times {
   double minimum = 0, median = 0;
 };
@@ -197,13 +220,15 @@ System nearest(int unknowns) {
 int main(int argc, char** argv) {
   std::vector<int> sizes{1600, 8000, 32617};
   int repeats = 7, threads = 1;
-  bool all = false, sweep = false;
+  bool all = false, sweep = false, stiffness = false;
   for (int i = 1; i < argc; ++i) {
     const bool more = i + 1 < argc;
     if (std::strcmp(argv[i], "--all") == 0) {
       all = true;
     } else if (std::strcmp(argv[i], "--sweep") == 0) {
       sweep = true;
+    } else if (std::strcmp(argv[i], "--stiffness") == 0) {
+      stiffness = true;
     } else if (std::strcmp(argv[i], "--cpu") == 0) {
       take_cpu_time = true;
     } else if (more && std::strcmp(argv[i], "--repeats") == 0) {
@@ -234,7 +259,16 @@ int main(int argc, char** argv) {
               "factor nnz");
   bool good = true;
   for (const int size : sizes) {
-    const System s = nearest(size);
+    const System s = stiffness ? stiffness_of(nearest(size)) : nearest(size);
+    const auto fronts = [&](const char* label, const MultifrontalOptions& o) {
+      good &= run(label, make_multifrontal_solver(make_mumps_solver(), o).get(), s, repeats);
+    };
+    fronts("multifrontal, single precision", {.single_from = 0});
+    fronts("multifrontal, double precision", {.single_precision = false});
+    if (stiffness) {
+      good &=
+          run("cholmod, supernodal", make_linear_solver(SolverKind::cholmod_supernodal).get(), s, repeats);
+    }
     const auto mumps = [&](const char* label, const MumpsOptions& o) {
       good &= run(label, make_mumps_solver(o).get(), s, repeats);
     };

@@ -50,6 +50,18 @@ foreach(backend MUMPS CHOLMOD METIS)
   endif()
 endforeach()
 
+set_property(SOURCE ${PROJECT_SOURCE_DIR}/engine/solvers/linear_solver.cpp APPEND PROPERTY
+  COMPILE_DEFINITIONS ISOCHOR_VERSION="${PROJECT_VERSION}")
+# Under the GPL, hence apart and only on request.
+if(ISOCHOR_HAVE_CHOLMOD_SUPERNODAL)
+  isochor_sources(_solvers_gpl engine/solvers/gpl)
+  isochor_module(solvers_gpl ${_solvers_gpl})
+  target_link_libraries(isochor_solvers_gpl PRIVATE isochor_solvers CHOLMOD::CHOLMOD)
+  set_property(SOURCE ${PROJECT_SOURCE_DIR}/engine/solvers/linear_solver.cpp APPEND PROPERTY
+    COMPILE_DEFINITIONS ISOCHOR_HAVE_CHOLMOD_SUPERNODAL)
+  target_link_libraries(isochor_solvers PRIVATE isochor_solvers_gpl)
+endif()
+
 isochor_sources(_engine engine engine/elements)
 isochor_module(engine ${_engine})
 # Square roots set no errno, so that they are taken eight at a time.

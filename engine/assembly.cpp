@@ -233,10 +233,16 @@ void Assembly::jacobian_times(std::span<const Vec3> v, std::span<double> y) cons
 }
 
 void Assembly::gather_block(std::int64_t block, Mat3& sum) const {
+  constexpr std::size_t ahead = 16;
   const Gather& g = system_->block_gather();
   const auto to = static_cast<std::size_t>(g.offset[static_cast<std::size_t>(block) + 1]);
   for (auto k = static_cast<std::size_t>(g.offset[static_cast<std::size_t>(block)]); k < to; ++k) {
     const std::int64_t source = g.source[k];
+    // The slots of a block lie far apart.
+    if (k + ahead < g.source.size()) {
+      const std::int64_t next = g.source[k + ahead];
+      __builtin_prefetch(&hessian_[static_cast<std::size_t>(next >= 0 ? next : ~next)]);
+    }
     if (source >= 0) {
       const Mat3& h = hessian_[static_cast<std::size_t>(source)];
       for (std::size_t i = 0; i < 9; ++i) sum.m[i] += h.m[i];

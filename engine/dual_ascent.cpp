@@ -103,7 +103,10 @@ bool DualAscent::minimize(const SaddleProblem& p, const SaddleOptions& options, 
       for (std::size_t i = 0; i < node_work_.size(); ++i) node_work_[i] += reaction_[i];
     }
     for (std::size_t i = 0; i < r_.size(); ++i) rhs_[i] = -(r_[i] + node_work_[i]);
-    if (!kkt_.solve_stiffness(rhs_, dx_, seconds_)) {
+    bool solved = kkt_.solve_stiffness(rhs_, dx_, seconds_);
+    if (!solved && kkt_.inertia_was_wrong())
+      solved = factor(p, x, effective_, report) && kkt_.solve_stiffness(rhs_, dx_, seconds_);
+    if (!solved) {
       report.status = SaddleStatus::singular;
       return false;
     }

@@ -213,7 +213,9 @@ Kkt::Outcome Kkt::eliminate_border(const Values& values, Outcome outcome) {
   for (std::size_t k = 0; k < nb; ++k) {
     const auto z = std::span(border_solution_).subspan(k * size, size);
     border_column(s.bordered_rows()[k], rhs_);
-    if (!solver_->solve(rhs_, z).ok) {
+    const SolveReport solved = solver_->solve(rhs_, z);
+    inertia_was_wrong_ = inertia_was_wrong_ || solved.inertia_changed;
+    if (!solved.ok) {
       outcome.status = FactorStatus::singular;
       outcome.message = "the system without its bordered rows is singular";
       return outcome;
@@ -310,8 +312,16 @@ Kkt::Outcome Kkt::factor(const Assembly& assembly, const Values& values, StageSe
       for (const std::int64_t k : s.diagonal_place()) upper[static_cast<std::size_t>(k)] = 0;
       values.unsymmetric->add_to(scale_, values.clamped, lower, upper);
     }
+    inertia_was_wrong_ = false;
     return factor_values(*unsymmetric_solver_, unsymmetric_analyzed_, both_triangles_, seconds);
   }
+  const Outcome outcome = factor_scaled(values, seconds);
+  return inertia_was_wrong_ ? factor_scaled(values, seconds) : outcome;
+}
+
+Kkt::Outcome Kkt::factor_scaled(const Values& values, StageSeconds& seconds) {
+  const System& s = *system_;
+  inertia_was_wrong_ = false;
   Outcome outcome = factor_values(*solver_, analyzed_, values_, seconds);
   if (outcome.status != FactorStatus::ok) return outcome;
   // A condensed row has its negative pivot in -C, eliminated first; a dual one in its Schur complement, whose
@@ -354,6 +364,7 @@ bool Kkt::solve_matrix(StageSeconds& seconds) {
   const SolveReport solved = factored_->solve(rhs_, solution_);
   residual_ = std::max(residual_, solved.residual);
   linear_iterations_ += solved.iterations;
+  inertia_was_wrong_ = inertia_was_wrong_ || solved.inertia_changed;
   const std::size_t nb = s.bordered_rows().size(), size = at(s.kkt().size);
   if (nb == 0) return solved.ok;
   // dlambda_b = S^-1 (g_b - B^T A^-1 f), u = A^-1 f - A^-1 B dlambda_b.

@@ -72,6 +72,8 @@ class Kkt {
 
   LinearSolver& linear_solver() { return *solver_; }
   double residual() const { return residual_; }  // of the last solve, relative
+  // The last solve showed that the inertia told by factor() was wrong; another factor() tells the right one.
+  bool inertia_was_wrong() const { return inertia_was_wrong_; }
   // Iterations of an iterative linear solver so far.
   std::int64_t linear_iterations() const { return linear_iterations_; }
   // Conjugate-gradient iterations on dual rows so far; each is one solve.
@@ -98,6 +100,7 @@ class Kkt {
   void add_dual_compliance(double alpha, std::span<const double> v, std::span<double> y) const;
   void add_row_force(Index row, double multiplier);
   double row_dot(Index row, std::span<const double> v) const;
+  Outcome factor_scaled(const Values& values, StageSeconds& seconds);
   Outcome eliminate_border(const Values& values, Outcome outcome);
   void border_column(Index row, std::span<double> column) const;
   double compliance_of(const Values& values, std::size_t entry) const;
@@ -108,7 +111,7 @@ class Kkt {
   std::int64_t factor_nonzeros_ = 0;
   int analyses_ = 0;
   std::int64_t linear_iterations_ = 0;
-  bool analyzed_ = false;
+  bool analyzed_ = false, inertia_was_wrong_ = false;
   // Of unsymmetric matrices: the solver, and the two triangles. `factored_` did the last matrix.
   std::unique_ptr<LinearSolver> unsymmetric_solver_;
   bool unsymmetric_analyzed_ = false;

@@ -48,6 +48,9 @@ struct SolveReport {
   double residual = 0;  // ||b - A x||_inf / (||A||_inf ||x||_inf + ||b||_inf), after refinement
   int refinements = 0;
   int iterations = 0;  // of an iterative method
+  // The factors were replaced by better ones, which have another number of negative pivots than factor() had
+  // reported; `ok` is false. A new factor() tells the right one.
+  bool inertia_changed = false;
 };
 
 class Parallel;
@@ -70,6 +73,9 @@ class LinearSolver {
   virtual void set_geometry(std::vector<UnknownGeometry> geometry) { (void)geometry; }
   // Before every factor() whose matrix is S A S: the diagonal of S, alive until the next call.
   virtual void set_scale(std::span<const double> scale) { (void)scale; }
+  // A new saddle point: what was learned from the matrices of earlier ones is forgotten, so that a run does
+  // not depend on where it was started.
+  virtual void begin_solve() {}
   // Ordering and symbolic work, once a topology. The pattern must outlive the solver's use of it.
   virtual FactorReport analyze(const SymmetricPattern& pattern) = 0;
   // Numeric factorisation of the values that belong to the analysed pattern. A solver from
@@ -81,11 +87,26 @@ class LinearSolver {
   virtual SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) = 0;
 };
 
-enum class SolverKind : std::uint8_t { automatic, mumps, cholmod, eigen, iterative };
+enum class SolverKind : std::uint8_t {
+  automatic,
+  mumps,
+  cholmod,
+  eigen,
+  iterative,
+  multifrontal,
+  cholmod_supernodal
+};
+
+struct SolverWishes {
+  bool prefer_iterative = false;  // of `automatic`: factors only where iterations have failed
+  // Factors in single precision where refinement shows that they do. Off where matrices next to singular
+  // ones are the point.
+  bool single_precision = true;
+};
 
 // The backend asked for, or one that chooses among those built in. Null when the backend is not
-// part of this build. `prefer_iterative` is for `automatic`: factors only where iterations have failed.
-std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, bool prefer_iterative = false);
+// part of this build.
+std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, const SolverWishes& wishes = {});
 
 // For matrices that are symmetric in their pattern alone: LU factors, without inertia. Never null; of a kind
 // that has no such factors the one that every build has.

@@ -478,6 +478,7 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
       return fail(report.status == SaddleStatus::converged ? SaddleStatus::singular : report.status);
     }
     bool found = direction(lambda, report);
+    if (!found && kkt_.inertia_was_wrong()) found = factor(p, x, lambda, report) && direction(lambda, report);
     // A backend that cannot tell the inertia is judged by its directions.
     if (report.negative_pivots < 0 && !(found && descends(p, x, lambda))) {
       found = mend_direction(p, x, lambda, report);

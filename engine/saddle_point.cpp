@@ -159,6 +159,7 @@ double SaddlePoint::potential_magnitude(const SaddleProblem& p, std::span<const 
 }
 
 void SaddlePoint::begin(const SaddleProblem& p) {
+  kkt_.linear_solver().begin_solve();
   assembly_.set_increment(p.increment, p.memory);
   shift_ = 0;
   trace_ = 0;

@@ -140,8 +140,18 @@ Result<void> World::Impl::make_method(SystemParts parts) {
                  "; use another method"};
   }
   const auto kind = static_cast<SolverKind>(options.solver);
-  auto solver = make_linear_solver(kind, large && !system->couples());
-  if (!solver) return Error{"world: this build has no linear solver"};
+  if (kind == SolverKind::cholmod_supernodal && !system->kept_rows().empty()) {
+    return Error{"world: solver cholmod_supernodal factors positive definite matrices, and " +
+                 std::to_string(system->kept_rows().size()) +
+                 " rows are in the matrix; use method condensation with element rows and nu < 0.5, method "
+                 "dual_gradients or augmented_gradients, or another solver"};
+  }
+  // Next to a limit point the sign of a vanishing eigenvalue counts.
+  SolverWishes wishes;
+  wishes.prefer_iterative = large && !system->couples();
+  wishes.single_precision = !follows;
+  auto solver = make_linear_solver(kind, wishes);
+  if (!solver) return Error{"world: this build does not have the linear solver that is asked for"};
   if (ascent) {
     DualAscentOptions ascent_options;
     ascent_options.augmented = ascent_options.scaled = options.method == Method::augmented_ascent;

@@ -31,6 +31,11 @@ ChosenSolver::ChosenSolver(std::unique_ptr<LinearSolver> direct, std::unique_ptr
       memory_(options.memory > 0 ? options.memory : memory_for_factors()),
       prefer_iterative_(options.prefer_iterative) {}
 
+std::string ChosenSolver::reason() const {
+  const std::string more = now_->reason();
+  return reason_ + (reason_.empty() || more.empty() ? "" : "; ") + more;
+}
+
 void ChosenSolver::set_parallel(const Parallel& parallel) {
   direct_->set_parallel(parallel);
   iterative_->set_parallel(parallel);
@@ -43,6 +48,11 @@ void ChosenSolver::set_geometry(std::vector<UnknownGeometry> geometry) {
 void ChosenSolver::set_scale(std::span<const double> scale) {
   direct_->set_scale(scale);
   iterative_->set_scale(scale);
+}
+
+void ChosenSolver::begin_solve() {
+  direct_->begin_solve();
+  iterative_->begin_solve();
 }
 
 // True when the direct solver is ready for values.

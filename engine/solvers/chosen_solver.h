@@ -26,11 +26,12 @@ class ChosenSolver final : public LinearSolver {
                const ChoiceOptions& options);
 
   std::string_view name() const override { return now_->name(); }
-  std::string reason() const override { return reason_; }
+  std::string reason() const override;
   void set_parallel(const Parallel& parallel) override;
   bool wants_geometry() const override { return true; }
   void set_geometry(std::vector<UnknownGeometry> geometry) override;
   void set_scale(std::span<const double> scale) override;
+  void begin_solve() override;
 
   FactorReport analyze(const SymmetricPattern& pattern) override;
   FactorReport factor(std::span<const double> values) override;

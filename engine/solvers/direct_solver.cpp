@@ -11,8 +11,8 @@
 namespace isochor {
 namespace {
 
-// A relative residual below this is rounding: further refinement only shuffles the last bits.
-constexpr double rounding_level = 2 * std::numeric_limits<double>::epsilon();
+// Below, rounding has a say in how residuals go on.
+constexpr double near_rounding = 1e-12;
 // A solution is usable when it solves a system this close to the one given.
 constexpr double acceptable_residual = 1e-10;
 
@@ -93,7 +93,7 @@ SolveReport DirectSolver::solve(std::span<const double> right_hand_side, std::sp
   if (factored_ && right_hand_side.size() == n && solution.size() == n) {
     if (n == 0) return {true, 0, 0};
     try {
-      if (std::isfinite(max_norm(right_hand_side))) report = refine(right_hand_side, solution);
+      if (std::isfinite(max_norm(right_hand_side))) report = refine_as_needed(right_hand_side, solution);
     } catch (...) {
       report.ok = false;
     }
@@ -103,9 +103,23 @@ SolveReport DirectSolver::solve(std::span<const double> right_hand_side, std::sp
   return report;
 }
 
+SolveReport DirectSolver::refine_as_needed(std::span<const double> b, std::span<double> x) {
+  bool inertia_changed = false;
+  SolveReport report = refine(b, x);
+  while ((!report.ok || doubtful()) && strengthen(report)) {
+    inertia_changed = inertia_changed || report.inertia_changed;
+    report = refine(b, x);
+  }
+  report.inertia_changed = inertia_changed;
+  // Solved, but not what was asked for: whoever asked believes in another inertia.
+  if (inertia_changed) report.ok = false;
+  return report;
+}
+
 SolveReport DirectSolver::refine(std::span<const double> b, std::span<double> x) {
   SolveReport report;
   report.residual = std::numeric_limits<double>::infinity();
+  contraction_ = 0;
   const double b_norm = max_norm(b);
   std::copy(b.begin(), b.end(), x.begin());
   if (!apply_inverse(x)) return report;
@@ -115,7 +129,7 @@ SolveReport DirectSolver::refine(std::span<const double> b, std::span<double> x)
     return scale > 0 ? residual_norm_ / scale : residual_norm_;
   };
   report.residual = relative(x);
-  while (report.residual > rounding_level && report.refinements < max_refinements &&
+  while (report.residual > target_residual && report.refinements < max_refinements &&
          std::isfinite(report.residual)) {
     const double before = report.residual, norm_before = residual_norm_;
     std::copy(residual_.begin(), residual_.end(), correction_.begin());
@@ -124,6 +138,7 @@ SolveReport DirectSolver::refine(std::span<const double> b, std::span<double> x)
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction_[i];
     const double now = relative(x);
     ++report.refinements;
+    if (before > near_rounding) contraction_ = std::max(contraction_, residual_norm_ / norm_before);
     if (!(now < before)) {  // worse, or NaN: keep what was there
       std::copy(best_.begin(), best_.end(), x.begin());
       residual_norm_ = norm_before;

@@ -1,6 +1,7 @@
 // What all direct backends share: checked input, iterative refinement in full precision, and the report.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "engine/linear_solver.h"
@@ -23,6 +24,15 @@ class DirectSolver : public LinearSolver {
   // Overwrites a right-hand side with the factor's solution of it; false when the backend fails.
   virtual bool apply_inverse(std::span<double> x) = 0;
 
+  // True when the last refine() arrived but its factors are not to be trusted.
+  virtual bool doubtful() const { return false; }
+  // Called when refinement on the factors at hand did not arrive: true when there are better ones now and the
+  // solve is worth another try.
+  virtual bool strengthen(SolveReport& report) {
+    (void)report;
+    return false;
+  }
+
   // The refined solution and how good it is. Also what a backend probes a doubtful factor with.
   SolveReport refine(std::span<const double> b, std::span<double> x);
 
@@ -30,10 +40,17 @@ class DirectSolver : public LinearSolver {
   const SymmetricPattern& pattern() const { return *pattern_; }
   std::span<const double> values() const { return values_; }
   double norm() const { return norm_; }  // infinity norm of the values last given to factor
+  // Of the last refine(): the largest ratio of residuals, in the norm of the right-hand side, from one
+  // refinement to the next; 0 when none was needed beyond rounding. The relative residual may fall although
+  // nothing converges, when the solution grows beyond bounds.
+  double contraction() const { return contraction_; }
   double last_residual_norm() const { return residual_norm_; }
   int max_refinements = 5;
+  // Where refinement ends: by default where it would only shuffle the last bits.
+  double target_residual = 2 * std::numeric_limits<double>::epsilon();
 
  private:
+  SolveReport refine_as_needed(std::span<const double> b, std::span<double> x);
   // residual = b - A x; returns its infinity norm, NaN included.
   double compute_residual(std::span<const double> b, std::span<const double> x);
 
@@ -41,7 +58,7 @@ class DirectSolver : public LinearSolver {
   const SymmetricPattern* pattern_ = nullptr;
   std::span<const double> values_;
   std::vector<double> residual_, correction_, best_;
-  double norm_ = 0, residual_norm_ = 0;
+  double norm_ = 0, residual_norm_ = 0, contraction_ = 0;
   bool factored_ = false;
 };
 

@@ -2,9 +2,13 @@
 
 #include "engine/solvers/cholmod_solver.h"
 #include "engine/solvers/chosen_solver.h"
+#ifdef ISOCHOR_HAVE_CHOLMOD_SUPERNODAL
+#include "engine/solvers/gpl/cholmod_supernodal.h"
+#endif
 #include "engine/solvers/eigen_solver.h"
 #include "engine/solvers/iterative_solver.h"
 #include "engine/solvers/lu_solver.h"
+#include "engine/solvers/multifrontal_solver.h"
 #include "engine/solvers/mumps_solver.h"
 #include "engine/solvers/ordering.h"
 
@@ -14,7 +18,19 @@ namespace isochor {
 // number, so that the last bits do not depend on how many cores there are.
 constexpr int default_blas_threads = 2;
 
-std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, bool prefer_iterative) {
+namespace {
+
+// The best of those with pivoting, or with a cure for pivots that vanish.
+std::unique_ptr<LinearSolver> make_pivoting_solver() {
+  auto solver = make_mumps_solver();
+  if (!solver) solver = make_cholmod_solver();
+  if (!solver) solver = make_eigen_solver();
+  return solver;
+}
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, const SolverWishes& wishes) {
   if (blas_threads() == 0) set_blas_threads(default_blas_threads);
   switch (kind) {
     case SolverKind::mumps:
@@ -25,21 +41,28 @@ std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, bool prefer_it
       return make_eigen_solver();
     case SolverKind::iterative:
       return make_iterative_solver();
+    case SolverKind::cholmod_supernodal:
+#ifdef ISOCHOR_HAVE_CHOLMOD_SUPERNODAL
+      return make_cholmod_supernodal_solver();
+#else
+      return nullptr;
+#endif
+    case SolverKind::multifrontal:
     case SolverKind::automatic:
       break;
   }
-  auto direct = make_mumps_solver();
-  if (!direct) direct = make_cholmod_solver();
-  if (!direct) direct = make_eigen_solver();
+  auto direct =
+      make_multifrontal_solver(make_pivoting_solver(), {.single_precision = wishes.single_precision});
+  if (kind == SolverKind::multifrontal) return direct;
   ChoiceOptions choice;
-  choice.prefer_iterative = prefer_iterative;
+  choice.prefer_iterative = wishes.prefer_iterative;
   return std::make_unique<ChosenSolver>(std::move(direct), make_iterative_solver(), choice);
 }
 
 std::unique_ptr<LinearSolver> make_unsymmetric_solver(SolverKind kind) {
   if (blas_threads() == 0) set_blas_threads(default_blas_threads);
   std::unique_ptr<LinearSolver> solver;
-  if (kind == SolverKind::automatic || kind == SolverKind::mumps) {
+  if (kind == SolverKind::automatic || kind == SolverKind::multifrontal || kind == SolverKind::mumps) {
     MumpsOptions options;
     options.unsymmetric = true;
     solver = make_mumps_solver(options);
@@ -48,7 +71,7 @@ std::unique_ptr<LinearSolver> make_unsymmetric_solver(SolverKind kind) {
 }
 
 std::vector<SolverBackend> linear_solver_backends() {
-  std::vector<SolverBackend> backends;
+  std::vector<SolverBackend> backends{{"multifrontal", ISOCHOR_VERSION, "Apache-2.0"}};
   if (const std::string v = mumps_version(); !v.empty()) backends.push_back({"MUMPS", v, "CeCILL-C"});
   if (const std::string v = cholmod_version(); !v.empty()) {
     // Only LGPL modules are called, but a distribution's library holds the GPL ones as well, and what a
@@ -56,6 +79,9 @@ std::vector<SolverBackend> linear_solver_backends() {
     backends.push_back(
         {"CHOLMOD", v, "LGPL-2.1-or-later (simplicial); distribution builds contain GPL modules"});
   }
+#ifdef ISOCHOR_HAVE_CHOLMOD_SUPERNODAL
+  backends.push_back({"CHOLMOD supernodal", cholmod_supernodal_version(), "GPL-2.0-or-later"});
+#endif
   backends.push_back({"Eigen", eigen_version(), "MPL-2.0"});
   if (have_metis()) backends.push_back({"METIS (ordering)", std::string(metis_version()), "Apache-2.0"});
   return backends;

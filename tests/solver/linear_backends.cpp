@@ -19,6 +19,7 @@ struct Backend {
 constexpr Backend kBackends[] = {{SolverKind::mumps, "mumps"},
                                  {SolverKind::cholmod, "cholmod"},
                                  {SolverKind::eigen, "eigen"},
+                                 {SolverKind::multifrontal, "multifrontal"},
                                  {SolverKind::automatic, "automatic"}};
 
 template <class Body>

@@ -1,0 +1,40 @@
+// The numeric part of a multifrontal factorization: A = L D L^T without pivoting, in single or double
+// precision.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/solvers/block_matrix.h"
+#include "engine/solvers/front_tree.h"
+
+namespace isochor {
+
+template <class Real>
+class FrontFactor {
+ public:
+  // The tree must outlive the factor.
+  void set_tree(const FrontTree& tree);
+  // False when a pivot is below `smallest` in magnitude, or not a number.
+  bool factor(const RowLoop& loop, std::span<const double> values, Real smallest);
+  Index negative_pivots() const;
+  // x = A^-1 x, in the sequence of the pattern's unknowns.
+  void solve(std::span<Real> x);
+  std::size_t bytes() const { return (factor_.size() + work_.size() + pivot_.size()) * sizeof(Real); }
+  void release();
+
+ private:
+  bool eliminate(Index front, const RowLoop& loop, std::span<const double> values, Real smallest);
+  void assemble(Index front, std::span<const double> values);
+  bool factor_panel(Index front, const RowLoop& loop, Real smallest);
+  void update(Index front, const RowLoop& loop);
+
+  const FrontTree* tree_ = nullptr;
+  std::vector<Real> factor_, work_, pivot_, permuted_, gathered_;
+  std::vector<std::uint8_t> job_ok_;
+};
+
+extern template class FrontFactor<float>;
+extern template class FrontFactor<double>;
+
+}  // namespace isochor

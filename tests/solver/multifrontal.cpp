@@ -1,0 +1,239 @@
+// Our own multifrontal factors: the tree against a dense elimination, precision that is climbed as matrices
+// need it, the same bits at any number of threads.
+#include <cmath>
+
+#include "catch.h"
+#include "engine/parallel.h"
+#include "engine/solvers/eigen_solver.h"
+#include "engine/solvers/multifrontal_solver.h"
+#include "engine/solvers/mumps_solver.h"
+#include "solver/linear_support.h"
+
+namespace {
+
+using namespace isochor;
+using test::Matrix;
+using Rung = MultifrontalSolver::Rung;
+
+std::unique_ptr<LinearSolver> pivoting() {
+  auto solver = make_mumps_solver();
+  return solver ? std::move(solver) : make_eigen_solver();
+}
+
+Index negative_eigenvalues(const Matrix& m) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(m.dense(), Eigen::EigenvaluesOnly);
+  return static_cast<Index>((eigen.eigenvalues().array() < 0).count());
+}
+
+// Entries of L and multiplications, by eliminating a dense pattern.
+struct Fill {
+  std::int64_t entries = 0;
+  double operations = 0;
+};
+
+Fill dense_fill(const Matrix& m, const Ordering& ordering) {
+  const Index n = m.pattern.size;
+  std::vector<std::vector<bool>> a(at(n), std::vector<bool>(at(n), false));
+  for (Index c = 0; c < n; ++c) {
+    for (auto k = m.pattern.column_start[at(c)]; k < m.pattern.column_start[at(c) + 1]; ++k) {
+      const Index i = ordering.position[at(m.pattern.row[static_cast<std::size_t>(k)])];
+      const Index j = ordering.position[at(c)];
+      a[at(std::max(i, j))][at(std::min(i, j))] = true;
+    }
+  }
+  Fill fill;
+  for (Index j = 0; j < n; ++j) {
+    std::vector<Index> below;
+    for (Index i = j + 1; i < n; ++i) {
+      if (a[at(i)][at(j)]) below.push_back(i);
+    }
+    for (const Index i : below) {
+      for (const Index k : below) {
+        if (k <= i) a[at(i)][at(k)] = true;
+      }
+    }
+    const double count = static_cast<double>(below.size());
+    fill.entries += 1 + static_cast<std::int64_t>(below.size());
+    fill.operations += 0.5 * count * (count + 3);
+  }
+  return fill;
+}
+
+// The matrix with the eigenvalue that is nearest to zero moved to `value`.
+Matrix with_eigenvalue(const Matrix& m, double value) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(m.dense());
+  Eigen::Index nearest = 0;
+  eigen.eigenvalues().cwiseAbs().minCoeff(&nearest);
+  const Eigen::VectorXd v = eigen.eigenvectors().col(nearest);
+  const Eigen::MatrixXd a = m.dense() + (value - eigen.eigenvalues()[nearest]) * v * v.transpose();
+  Matrix out = test::sparse(0.5 * (a + a.transpose()));
+  out.pattern.multiplier = m.pattern.multiplier;
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("the tree counts what a dense elimination fills") {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    const Matrix m = test::saddle({40, 13, seed == 2, 0.1, 0}, seed);
+    for (const auto method : {OrderingMethod::as_given, OrderingMethod::amd, OrderingMethod::best}) {
+      const Ordering ordering = order_unknowns(m.pattern, method);
+      const Fill fill = dense_fill(m, ordering);
+      const FrontTree tree = front_tree(m.pattern, ordering);
+      CHECK(tree.factor_nonzeros == fill.entries);
+      CHECK(tree.operations == Approx(fill.operations));
+      CHECK(operations_of(m.pattern, ordering) == Approx(fill.operations));
+      CHECK(tree.panel_start.back() >= tree.factor_nonzeros - tree.size);
+      for (Index f = 0; f < tree.fronts(); ++f) {
+        REQUIRE((tree.parent[at(f)] == -1 || tree.parent[at(f)] > f));
+        REQUIRE((tree.updates(f) == 0) == (tree.parent[at(f)] == -1));
+      }
+    }
+  }
+}
+
+TEST_CASE("fronts eliminate and solve in both precisions") {
+  for (const bool dense_row : {false, true}) {
+    const Matrix m = test::saddle({120, 36, dense_row, 1e-3, 2});
+    const FrontTree tree = front_tree(m.pattern, order_unknowns(m.pattern));
+    const std::vector<double> b = test::random_vector(m.pattern.size);
+    const Eigen::VectorXd exact =
+        m.dense().partialPivLu().solve(Eigen::Map<const Eigen::VectorXd>(b.data(), m.pattern.size));
+    FrontFactor<double> full;
+    full.set_tree(tree);
+    REQUIRE(full.factor(RowLoop(), m.values, 1e-13));
+    std::vector<double> x = b;
+    full.solve(x);
+    CHECK((Eigen::Map<Eigen::VectorXd>(x.data(), exact.size()) - exact).norm() < 1e-9 * exact.norm());
+    CHECK(full.negative_pivots() == negative_eigenvalues(m));
+    FrontFactor<float> single;
+    single.set_tree(tree);
+    REQUIRE(single.factor(RowLoop(), m.values, 1e-6f));
+    std::vector<float> y(b.begin(), b.end());
+    single.solve(y);
+    const double error = (Eigen::Map<Eigen::VectorXf>(y.data(), exact.size()).cast<double>() - exact).norm();
+    CHECK(error < 1e-2 * exact.norm());
+    CHECK(error > 1e-9 * exact.norm());  // it is single precision
+  }
+}
+
+TEST_CASE("fronts have the same bits at any number of threads") {
+  const Matrix m = test::saddle({400, 120, true, 1e-3, 0});
+  const std::vector<double> b = test::random_vector(m.pattern.size);
+  std::vector<double> expected(b.size());
+  for (const int threads : {1, 2, 4, 8}) {
+    const TbbParallel parallel(threads);
+    const auto solver = make_multifrontal_solver(pivoting(), {.single_from = 0});
+    solver->set_parallel(parallel);
+    REQUIRE(solver->analyze(m.pattern).status == FactorStatus::ok);
+    std::vector<double> x(b.size());
+    for (int k = 0; k < 3; ++k) {
+      REQUIRE(solver->factor(m.values).status == FactorStatus::ok);
+      REQUIRE(solver->solve(b, x).ok);
+    }
+    if (threads == 1) expected = x;
+    CHECK(x == expected);
+  }
+}
+
+// Whatever the precision: either factor() tells the inertia, or the solve takes it back.
+TEST_CASE("an eigenvalue next to zero is told by its sign") {
+  const Matrix base = test::saddle({50, 15, false, 0.1, 0});
+  int climbed = 0;
+  for (double size = 1e-3; size > 1e-10; size /= 4) {
+    for (const double sign : {1.0, -1.0}) {
+      const Matrix m = with_eigenvalue(base, sign * size);
+      INFO("eigenvalue " << sign * size);
+      MultifrontalSolver solver(pivoting(), {.single_from = 0});
+      REQUIRE(solver.analyze(m.pattern).status == FactorStatus::ok);
+      FactorReport f = solver.factor(m.values);
+      REQUIRE(f.status == FactorStatus::ok);
+      const std::vector<double> b = test::random_vector(m.pattern.size);
+      std::vector<double> x(b.size());
+      SolveReport s = solver.solve(b, x);
+      if (s.inertia_changed) {
+        CHECK_FALSE(s.ok);
+        f = solver.factor(m.values);
+        s = solver.solve(b, x);
+      }
+      CHECK(s.ok);
+      CHECK(s.residual <= 1e-10);
+      CHECK(f.negative_pivots == negative_eigenvalues(m));
+      if (solver.rung() != Rung::single) ++climbed;
+      if (size > 1e-4) CHECK(solver.rung() == Rung::single);
+      if (size < 1e-9) CHECK(solver.rung() != Rung::single);
+    }
+  }
+  CHECK(climbed > 4);
+}
+
+TEST_CASE("what was learned from a matrix is forgotten with the next saddle point") {
+  const Matrix easy = test::saddle({50, 15, false, 0.1, 0});
+  const Matrix hard = with_eigenvalue(easy, 1e-9);
+  Matrix same_pattern = hard;
+  const Eigen::MatrixXd values = easy.dense();
+  for (Index c = 0; c < hard.pattern.size; ++c) {
+    for (auto k = hard.pattern.column_start[at(c)]; k < hard.pattern.column_start[at(c) + 1]; ++k)
+      same_pattern.values[static_cast<std::size_t>(k)] =
+          values(hard.pattern.row[static_cast<std::size_t>(k)], c);
+  }
+  const std::vector<double> b = test::random_vector(easy.pattern.size);
+  std::vector<double> fresh(b.size()), x(b.size());
+  MultifrontalSolver solver(pivoting(), {.single_from = 0});
+  const auto solve = [&](const Matrix& m, std::vector<double>& to) {
+    REQUIRE(solver.factor(m.values).status == FactorStatus::ok);
+    REQUIRE_FALSE(solver.solve(b, to).inertia_changed);
+  };
+  REQUIRE(solver.analyze(hard.pattern).status == FactorStatus::ok);
+  solver.begin_solve();
+  solve(same_pattern, fresh);
+  CHECK(solver.rung() == Rung::single);
+  solve(hard, x);
+  CHECK(solver.rung() == Rung::full);
+  solve(same_pattern, x);
+  CHECK(solver.rung() == Rung::full);  // within one saddle point matrices are alike
+  solver.begin_solve();
+  solve(same_pattern, x);
+  CHECK(solver.rung() == Rung::single);
+  CHECK(x == fresh);
+  CHECK(solver.reason().find("3 factorizations in single precision") != std::string::npos);
+}
+
+TEST_CASE("small systems start with double precision") {
+  const Matrix m = test::saddle({50, 15, false, 0.1, 0});
+  MultifrontalSolver solver(pivoting(), {});
+  REQUIRE(solver.analyze(m.pattern).status == FactorStatus::ok);
+  CHECK(solver.tree().operations < 1e8);
+  REQUIRE(solver.factor(m.values).status == FactorStatus::ok);
+  CHECK(solver.rung() == Rung::full);
+}
+
+TEST_CASE("pivots that vanish are left to a backend that pivots") {
+  // A hard row comes first: no groups and no multipliers tell the ordering to wait with it.
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(4, 4);
+  a(0, 1) = a(1, 0) = 1;
+  a(1, 2) = a(2, 1) = 0.5;
+  a(2, 2) = 2;
+  a(3, 3) = 1;
+  const Matrix m = test::sparse(a);
+  MultifrontalSolver solver(pivoting(), {.single_from = 0, .ordering = OrderingMethod::as_given});
+  REQUIRE(solver.analyze(m.pattern).status == FactorStatus::ok);
+  const FactorReport f = solver.factor(m.values);
+  REQUIRE(f.status == FactorStatus::ok);
+  CHECK(f.negative_pivots == 1);
+  CHECK(solver.rung() == Rung::pivoting);
+  std::vector<double> b{1, 2, 3, 4}, x(4);
+  REQUIRE(solver.solve(b, x).ok);
+  for (Index i = 0; i < 4; ++i) {
+    double sum = 0;
+    for (Index j = 0; j < 4; ++j) sum += a(i, j) * x[at(j)];
+    CHECK(sum == Approx(b[at(i)]).margin(1e-12));
+  }
+  CHECK(solver.reason().find("pivoted by") != std::string::npos);
+
+  MultifrontalSolver alone(nullptr, {.single_from = 0, .ordering = OrderingMethod::as_given});
+  REQUIRE(alone.analyze(m.pattern).status == FactorStatus::ok);
+  const FactorReport refused = alone.factor(m.values);
+  CHECK(refused.status == FactorStatus::singular);
+  CHECK(refused.message.find("pivoting") != std::string::npos);
+}
