@@ -86,17 +86,6 @@ double ContactPool::gap(Index s, const ContactFrame& frame, std::span<const Vec3
   return distance_value(shape_, frame.to_own(point(s, x))) - offset_[at(s)];
 }
 
-double ContactPool::gap_rate(Index s, const ContactFrame& frame, const ContactFrame& later, double h,
-                             std::span<const Vec3> x, std::span<const Vec3> v) const {
-  const Vec3 own = frame.to_own(point(s, x));
-  const auto c = weights(s, own);
-  const auto nodes = nodes_[s];
-  Vec3 rate{};
-  for (std::size_t i = 0; i < nodes.size(); ++i) rate += c[i] * v[at(nodes[i])];
-  if (!points_) rate -= (1 / h) * (later.to_world(own) - frame.to_world(own));
-  return dot(transposed_times(frame.inverse, distance_to(shape_, own).normal), rate);
-}
-
 // Weights of the nodes in the motion of the point relative to the shape, the point being at `own` in the
 // shape's axes.
 std::array<double, ContactPool::kMost> ContactPool::weights(Index s, const Vec3& own) const {

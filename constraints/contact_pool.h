@@ -62,9 +62,16 @@ class ContactPool final : public StencilPool {
     return points_ ? frame_of(*points_, x) : frame_of(pose_of(shape_, t));
   }
   double gap(Index s, const ContactFrame& frame, std::span<const Vec3> x) const;
-  // Rate of the gap [m/s] at positions x and velocities v; `later` is the frame after h seconds.
-  double gap_rate(Index s, const ContactFrame& frame, const ContactFrame& later, double h,
-                  std::span<const Vec3> x, std::span<const Vec3> v) const;
+  // Impacts, in contact_impact.cpp. Rate of the gap [m/s] when an increment begins, at velocities v + jump;
+  // obstacles move as they will until it ends. And what a unit impulse along the normal does: velocities of
+  // the nodes of the stencil, and the rate of the gap.
+  double gap_rate(Index s, const RowStart& start, const ContactFrame& frame, const ContactFrame& later,
+                  std::span<const Vec3> jump) const;
+  struct Impact {
+    std::array<Vec3, 8> velocity{};  // [m/s over N s]
+    double mobility = 0;             // [1/kg]
+  };
+  Impact impact(Index s, const RowStart& start, const ContactFrame& frame) const;
   const Obstacle& shape() const { return shape_; }
 
  private:

@@ -168,9 +168,12 @@ struct RowIncrement {
 
 // What an increment of dynamics begins from, for rows that look back at it.
 struct RowStart {
-  double t0 = 0, t1 = 0;        // [s]
-  std::span<const Vec3> x, v;   // positions [m] and velocities [m/s] of all nodes
-  std::span<const Vec3> ahead;  // where these velocities carry them until t1 [m]
+  double t0 = 0, t1 = 0;           // [s]
+  std::span<const Vec3> x, v;      // positions [m] and velocities [m/s] of all nodes
+  std::span<const Vec3> ahead;     // where these velocities carry them until t1 [m]
+  std::span<const double> mass;    // of all nodes, lumped [kg]
+  std::span<const double> target;  // of the rows of the pool, at t1
+  std::span<double> work;          // two numbers a row of the pool to work with
 };
 
 // Rows of one effect over the functions of one stencil pool: phi_r = sum_i weight_i * function_i.
@@ -199,14 +202,14 @@ class RowPool {
     (void)t;
     for (double& v : value) v = 0;
   }
-  // True when targets depend on where an increment begins as well (what hits and bounces off).
+  // True when velocities may jump as an increment of dynamics begins (impacts).
   virtual bool looks_back() const { return false; }
-  // Changes the targets of an increment that update() has filled for its end, and says whether they make
-  // velocities jump. Such an increment is one of implicit Euler, in which a row whose function grows by d
-  // ends with the rate d / h, and a scheme starts anew behind it.
-  virtual bool look_back(const RowStart& start, std::span<double> value) const {
+  // Adds jumps to those of other rows, one a node [m/s], and says whether there are any. An increment that
+  // begins so is one of implicit Euler, from the velocities behind the jump, and schemes start anew behind
+  // it.
+  virtual bool look_back(const RowStart& start, std::span<Vec3> jump) const {
     (void)start;
-    (void)value;
+    (void)jump;
     return false;
   }
   // As Prescriber::turn(), of the targets.

@@ -11,6 +11,7 @@ UnsymmetricNewton::UnsymmetricNewton(std::shared_ptr<const System> system, const
     : Newton(std::move(system), parallel, std::move(solver)), part_(system_, parallel) {
   kkt_.take_unsymmetric(std::move(unsymmetric));
   no_rows_.assign(at(system_->rows()), 0);
+  held_before_ = clamped_;
 }
 
 // Given nodes that have a way to go, and multipliers that go to their bounds, change what others feel.
@@ -92,7 +93,7 @@ bool UnsymmetricNewton::factor_coupled(SaddleReport& report) {
 // One iteration with the unsymmetric matrix; false when it finds no smaller residual.
 bool UnsymmetricNewton::coupled_step(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                                      std::span<double> lambda, SaddleReport& report) {
-  constexpr double shortest = 0.1;
+  constexpr double shortest = 0.4;
   coupled_ = true;
   mended_ = false;
   const bool found = factor_coupled(report) && direction(lambda, report);
@@ -177,7 +178,10 @@ SaddleReport UnsymmetricNewton::solve(const SaddleProblem& p, const SaddleOption
   begin_search(options);
   clamp(lambda);
   const System& s = *system_;
-  int stalls = 0, hold = 0;  // iterations for which the lag is still held
+  constexpr int longest_hold = 8;
+  bool holding = false;
+  int stalls = 0, held = 0;  // iterations with the lag held since the last stall
+  full_step_ = false;
   for (int iteration = 0;; ++iteration) {
     evaluate_here(p, x, lambda);
     if (iteration == 0 && !std::isfinite(assembly_.energy())) return fail(SaddleStatus::not_finite);
@@ -189,16 +193,21 @@ SaddleReport UnsymmetricNewton::solve(const SaddleProblem& p, const SaddleOption
     if (balanced(p, options, x, lambda, report)) return report;
     if (s.has_bounds()) choose_clamped(lambda, iteration == 0);
     if (!s.laws().empty()) apply_laws(p, lambda, true);
+    const bool settled = full_step_ && clamped_ == held_before_;
+    std::copy(clamped_.begin(), clamped_.end(), held_before_.begin());
+    if (holding && held >= stalls && (settled || held >= longest_hold)) holding = false;
     part_.evaluate(assembly_, x);
     if (part_.vanishes()) {
       if (!lagged_step(p, x, lambda, report)) return report;
-    } else if (hold > 0 || !coupled_step(p, options, x, lambda, report)) {
-      if (hold == 0) {
-        hold = 1 << std::min(stalls++, 4);
+    } else if (holding || !coupled_step(p, options, x, lambda, report)) {
+      if (!holding) {
+        holding = true;
+        held = 0;
+        ++stalls;
         evaluate_here(p, x, lambda);
         if (!s.laws().empty()) apply_laws(p, lambda, true);
       }
-      --hold;
+      ++held;
       ++report.lagged;
       if (!lagged_step(p, x, lambda, report)) return report;
     }

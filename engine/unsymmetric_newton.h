@@ -4,9 +4,10 @@
 // A step is searched on the size of the residual,
 //   R^2 = sum |r_i|^2 / k_i + sum D_r (projection(lambda + theta / D) - lambda)^2 + sum k_i |gap_i|^2,
 // an energy: the norms of SaddlePoint::measure with metrics in place of measures. An exact Newton step
-// descends it as long as the set of rows held at bounds stays. Where it does not get smaller within a tenth
-// of a step, the lag is held for an iteration, or for more of them with every time: symmetric, with the merit
-// of Newton. An iteration in which nothing makes the matrix unsymmetric is one of Newton anyway.
+// descends it as long as the set of rows held at bounds stays. Where two fifths of a step do not make it
+// smaller, the lag is held, symmetric and with the merit of Newton: for one iteration, one more with every
+// time, and until that set has stayed over a full step. An iteration in which nothing makes the matrix
+// unsymmetric is one of Newton anyway.
 #pragma once
 
 #include "engine/newton.h"
@@ -40,6 +41,7 @@ class UnsymmetricNewton final : public Newton {
   UnsymmetricPart part_;
   bool coupled_ = false;  // the factors at hand are those of the unsymmetric matrix
   std::vector<double> no_rows_;
+  std::vector<std::uint8_t> held_before_;  // rows held at a bound, an iteration ago
 };
 
 }  // namespace isochor

@@ -145,8 +145,10 @@ void World::Impl::allocate() {
     }
   }
   if (std::any_of(parts.row_pools.begin(), parts.row_pools.end(),
-                  [](const auto& p) { return p->looks_back(); }))
+                  [](const auto& p) { return p->looks_back() && p->rows() > 0; })) {
     no_past.assign(options.scheme->memory(n), 0);
+    row_work.resize(2 * at(system->rows()));
+  }
   evaluate_data(0);
 }
 
@@ -297,16 +299,26 @@ SaddleReport World::Impl::solve_increment(SaddleProblem& problem, const Allowanc
   return report;
 }
 
-// Has rows that look back change their targets for the increment; true when velocities jump in it.
+// Asks rows that look back for jumps of velocities, into the trial positions; true when there are any. The
+// prediction is overwritten.
 bool World::Impl::look_back(double t, double h) {
-  bool jumps = false, ahead = false;
+  if (row_work.empty()) return false;
+  for (std::size_t i = 0; i < x_trial.size(); ++i) predicted[i] = state.x[i] + h * state.v[i];
+  std::fill(x_trial.begin(), x_trial.end(), Vec3{});
+  bool jumps = false;
   for (Index p = 0; p < static_cast<Index>(system->parts().row_pools.size()); ++p) {
     const RowPool& pool = *system->parts().row_pools[at(p)];
     if (!pool.looks_back() || pool.law != RowLaw::compliant) continue;
-    for (std::size_t i = 0; i < x_trial.size() && !ahead; ++i) x_trial[i] = state.x[i] + h * state.v[i];
-    ahead = true;
-    const auto targets = std::span(target).subspan(at(system->first_row(p)), at(pool.rows()));
-    jumps = pool.look_back({state.t, t, state.x, state.v, x_trial}, targets) || jumps;
+    const auto first = at(system->first_row(p)), count = at(pool.rows());
+    const RowStart start{state.t,
+                         t,
+                         state.x,
+                         state.v,
+                         predicted,
+                         system->parts().mass,
+                         std::span<const double>(target).subspan(first, count),
+                         std::span(row_work).subspan(2 * first, 2 * count)};
+    jumps = pool.look_back(start, x_trial) || jumps;
   }
   return jumps;
 }
@@ -318,6 +330,7 @@ SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
   starts_anew = look_back(t_new, h_evaluated);
   problem.mass_scale = options.scheme->begin(
       state, starts_anew ? std::span<const double>(no_past) : scheme_memory(), h, predicted);
+  for (std::size_t i = 0; i < predicted.size() && starts_anew; ++i) predicted[i] += h * x_trial[i];
   problem.predicted = predicted;
   const bool dynamic = problem.mass_scale > 0;
   if (dynamic) problem.increment.h = h_evaluated;

@@ -36,9 +36,10 @@ struct World::Impl {
       memory_before;  // weight: consistent nodal mass [kg]
 
   std::vector<double> amounts_before;
-  bool starts_anew = false;     // the increment under way makes velocities jump (RowPool::look_back)
-  std::vector<double> no_past;  // of a scheme in such an increment
-  State state_before;           // of an increment that the control of errors may take back
+  bool starts_anew = false;      // the increment under way makes velocities jump (RowPool::look_back)
+  std::vector<double> no_past;   // of a scheme in such an increment
+  std::vector<double> row_work;  // of rows that look back; empty: there are none
+  State state_before;            // of an increment that the control of errors may take back
 
   bool compiled() const { return newton != nullptr; }
   Result<void> compile();

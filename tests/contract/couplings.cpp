@@ -6,6 +6,7 @@
 #include "catch.h"
 #include "contract/scene_probe.h"
 #include "engine/kkt.h"
+#include "support/allocations.h"
 #include "support/meshes.h"
 
 using namespace isochor;
@@ -180,5 +181,27 @@ TEST_CASE("the solution of an unsymmetric system solves it") {
       CHECK(worst < 1e-8 * std::max(1.0, largest));
       CHECK(worst_row < 1e-8);
     }
+  });
+}
+
+TEST_CASE("pools that couple answer without allocating, and to the same bits") {
+  for_every_coupling([](Coupled& c) {
+    const auto d = c.scene.direction(7);
+    const std::vector<double> dl = random_numbers(c.lambda.size(), 3);
+    std::vector<Vec3> first(d.size()), second(d.size());
+    c.evaluate(Want::hessian, c.scene.x(), c.lambda);
+    c.part.evaluate(c.assembly, c.scene.x());
+    CHECK_FALSE(c.part.vanishes());
+    c.part.add_times(d, dl, first);
+    const test::AllocationCount allocations;
+    c.part.evaluate(c.assembly, c.scene.x());
+    c.part.add_times(d, dl, second);
+    const long count = allocations.count();
+    CHECK(count == 0);
+    CHECK(first == second);
+    // Where nothing presses there is nothing to couple.
+    c.evaluate(Want::gradient, c.scene.x(), std::vector<double>(c.lambda.size(), 0));
+    c.part.evaluate(c.assembly, c.scene.x());
+    CHECK(c.part.vanishes());
   });
 }

@@ -250,7 +250,7 @@ void add_rigid_bodies(std::vector<SceneCase>& out, Element element) {
     SceneCase c =
         on_block("contact with a rigid body, shape " + std::to_string(static_cast<int>(shape)), element,
                  {"constraints/contact", "constraints/contact_frame", "constraints/rigid_body",
-                  "constraints/moved_solid"},
+                  "constraints/moved_solid", "constraints/contact_impact"},
                  rigid_body(thing));
     c.effects.push_back(contact(touch));
     c.stress_free = false;  // distances between bodies that are apart
@@ -260,6 +260,7 @@ void add_rigid_bodies(std::vector<SceneCase>& out, Element element) {
     floor.obstacle.position = {0, 0, -3};
     floor.obstacle.axis = {0.1, 0.2, 1};
     floor.friction = 0.4;
+    floor.restitution = 0.5;
     floor.coupling = FrictionCoupling::coupled;
     c.name = "rigid body on a floor, shape " + std::to_string(static_cast<int>(shape));
     c.effects.back() = contact(floor);
