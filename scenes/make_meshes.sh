@@ -72,6 +72,17 @@ thick_sphere_2_hex          thick_sphere_hex  1  n=8
 torsion_cylinder_1_hex      torsion_cylinder_hex 1  n=2
 torsion_cylinder_2_hex      torsion_cylinder_hex 1  n=4
 tube_hex                    tube_hex          1  n=3
+cook3d_coarse_tet10         cook3d            2  h=0.020
+cook_plane_grid_1           cook_plane_grid   1  nx=5 ny=5
+cook_plane_grid_2           cook_plane_grid   1  nx=8 ny=8
+thick_tube_coarse           thick_tube        1  h=0.4500
+thick_tube_coarse_tet10     thick_tube        2  h=0.8000
+thick_tube_coarse_hex       thick_tube_hex    1  n=3
+thick_sphere_coarse         thick_sphere      1  h=0.5000
+thick_sphere_coarse_tet10   thick_sphere      2  h=1.0000
+thick_sphere_coarse_hex     thick_sphere_hex  1  n=3
+torsion_cylinder_coarse     torsion_cylinder  1  h=0.4000
+torsion_cylinder_coarse_tet10 torsion_cylinder 2 h=1.0000
 '
 fine='
 tube_fine                   tube              1  h=0.0034

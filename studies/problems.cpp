@@ -22,8 +22,14 @@ const std::vector<Problem>& table() {
        -0.4763,
        1e-4 / 0.4763,
        kTaylorHood,
-       {std::array{10, 1, 1}, std::array{20, 2, 2}, std::array{40, 4, 4}, std::array{60, 6, 6}},
-       {std::array{5, 1, 1}, std::array{10, 1, 1}, std::array{20, 2, 2}, std::array{30, 3, 3}}},
+       {std::array{10, 1, 1}, std::array{20, 2, 2}, std::array{30, 3, 3}, std::array{40, 4, 4},
+        std::array{60, 6, 6}},
+       {std::array{5, 1, 1}, std::array{10, 1, 1}, std::array{20, 2, 2}, std::array{30, 3, 3}},
+       {},
+       3,
+       0.5,
+       false,
+       {std::array{80, 8, 8}}},
       {"cook",
        "Cook's membrane, 3D",
        cook,
@@ -32,7 +38,7 @@ const std::vector<Problem>& table() {
        0.0015 / 8.510,
        kTaylorHood,
        {"cook3d_1", "cook3d_2", "cook3d_3"},
-       {"cook3d_1_tet10", "cook3d_2_tet10"},
+       {"cook3d_coarse_tet10", "cook3d_1_tet10", "cook3d_2_tet10"},
        {"cook3d_1_hex", "cook3d_2_hex", "cook3d_3_hex"}},
       {"cook_plane",
        "Cook's membrane, plane strain",
@@ -41,7 +47,7 @@ const std::vector<Problem>& table() {
        6.962,
        0.001 / 6.962,
        kTaylorHood,
-       {"cook_plane_1", "cook_plane_2"},
+       {"cook_plane_grid_1", "cook_plane_grid_2", "cook_plane_1", "cook_plane_2"},
        {"cook_plane_tet10"},
        {"cook_plane_1_hex", "cook_plane_2_hex"},
        2},
@@ -52,10 +58,14 @@ const std::vector<Problem>& table() {
        0.5740535723065197,
        0,
        kClosedForm,
-       {"thick_tube_1", "thick_tube"},
-       {"thick_tube_1_tet10", "thick_tube_tet10"},
-       {"thick_tube_1_hex", "thick_tube_2_hex"},
-       2},
+       {"thick_tube_coarse", "thick_tube_1", "thick_tube"},
+       {"thick_tube_coarse_tet10", "thick_tube_1_tet10", "thick_tube_tet10"},
+       {"thick_tube_coarse_hex", "thick_tube_1_hex", "thick_tube_2_hex"},
+       2,
+       0.5,
+       false,
+       {},
+       3},
       {"thick_sphere",
        "Thick sphere, volume given",
        thick_sphere_volume,
@@ -63,9 +73,14 @@ const std::vector<Problem>& table() {
        0.8069266031066276,
        0,
        kClosedForm,
-       {"thick_sphere_1", "thick_sphere"},
-       {"thick_sphere_1_tet10", "thick_sphere_tet10"},
-       {"thick_sphere_1_hex", "thick_sphere_2_hex"}},
+       {"thick_sphere_coarse", "thick_sphere_1", "thick_sphere"},
+       {"thick_sphere_coarse_tet10", "thick_sphere_1_tet10", "thick_sphere_tet10"},
+       {"thick_sphere_coarse_hex", "thick_sphere_1_hex", "thick_sphere_2_hex"},
+       3,
+       0.5,
+       false,
+       {},
+       3},
       {"torsion",
        "Torsion of a cylinder",
        torsion,
@@ -73,9 +88,14 @@ const std::vector<Problem>& table() {
        1.570796326794897,
        0,
        kClosedForm,
-       {"torsion_cylinder_1", "torsion_cylinder"},
-       {"torsion_cylinder_1_tet10", "torsion_cylinder_tet10"},
-       {"torsion_cylinder_1_hex", "torsion_cylinder_2_hex"}},
+       {"torsion_cylinder_coarse", "torsion_cylinder_1", "torsion_cylinder"},
+       {"torsion_cylinder_coarse_tet10", "torsion_cylinder_1_tet10", "torsion_cylinder_tet10"},
+       {"torsion_cylinder_1_hex", "torsion_cylinder_2_hex"},
+       3,
+       0.5,
+       false,
+       {},
+       2},
       {"block",
        "Compressed block",
        compressed_block,
@@ -99,7 +119,10 @@ const std::vector<Problem>& table() {
        {"cushion_1", "cushion", "cushion_2_tet10"},
        {},
        3,
-       0.499},
+       0.499,
+       false,
+       {},
+       5},
       {"swing",
        "Swing of a beam",
        swing,
@@ -112,7 +135,9 @@ const std::vector<Problem>& table() {
        {},
        3,
        0.5,
-       true},
+       true,
+       {},
+       16},
   };
   return problems;
 }
@@ -129,10 +154,13 @@ const Problem& problem(std::string_view name) {
   return it == all.end() ? all.front() : *it;
 }
 
-const std::vector<LevelMesh>& meshes(const Problem& p, const Formulation& f) {
+std::vector<LevelMesh> meshes(const Problem& p, const Formulation& f) {
   if (f.quadratic()) return p.quadratic;
   const bool boxes = std::holds_alternative<std::array<int, 3>>(p.linear.front());
-  return f.hexahedra() && !boxes ? p.hexahedra : p.linear;
+  if (f.hexahedra() && !boxes) return p.hexahedra;
+  std::vector<LevelMesh> all = p.linear;
+  if (f.element == Element::tet4) all.insert(all.end(), p.finer.begin(), p.finer.end());
+  return all;
 }
 
 std::size_t level_count(const Problem& p, const Formulation& f) {
@@ -140,7 +168,7 @@ std::size_t level_count(const Problem& p, const Formulation& f) {
 }
 
 SceneDef make_scene(const Problem& p, const Formulation& f, std::size_t level) {
-  const LevelMesh& mesh = meshes(p, f)[level];
+  const LevelMesh mesh = meshes(p, f)[level];
   SceneVariant variant;
   if (const auto* name = std::get_if<std::string_view>(&mesh)) variant.mesh = *name;
   variant.element = f.element;

@@ -30,12 +30,15 @@ struct Problem {
   int dimension = 3;     // 2: a slab one element thick, refined in its plane
   double nu = 0.5;       // of the scene
   bool dynamic = false;  // a motion: the time step adds an error of its own
+  // Meshes of the Tet4 without smoothing, which need finer ones; after those of `linear`.
+  std::vector<LevelMesh> finer = {};
+  int few_steps = 1;  // steps (of load or time) that are enough for a percent
 };
 
 std::span<const Problem> problems();
 const Problem& problem(std::string_view name);  // must exist
 
-const std::vector<LevelMesh>& meshes(const Problem& p, const Formulation& f);
+std::vector<LevelMesh> meshes(const Problem& p, const Formulation& f);
 std::size_t level_count(const Problem& p, const Formulation& f);
 // The problem on one of its meshes; `level` starts at 0, the coarsest.
 SceneDef make_scene(const Problem& p, const Formulation& f, std::size_t level);

@@ -24,7 +24,7 @@ void add_tips(std::vector<Cell>& out, bool quick) {
   const Problem& p = problem("cantilever");
   for (const Formulation& f : formulations()) {
     // The mesh of 480 tets (quick) or 3,840; Tet10 one level coarser, at about the same unknowns.
-    const std::size_t level = quick ? 1 : 2;
+    const std::size_t level = quick ? 1 : f.quadratic() ? 2 : 3;
     for (const double nu : {0.3, 0.4, 0.45, 0.49, 0.499, 0.4999, 0.5}) {
       if (quick && (nu == 0.4 || nu == 0.4999)) continue;
       // Refused by design: its energy is infinite there.
