@@ -73,7 +73,7 @@ torsion_cylinder_1_hex      torsion_cylinder_hex 1  n=2
 torsion_cylinder_2_hex      torsion_cylinder_hex 1  n=4
 tube_hex                    tube_hex          1  n=3
 cook3d_coarse_tet10         cook3d            2  h=0.020
-cook_plane_grid_1           cook_plane_grid   1  nx=6 ny=4
+cook_plane_grid_1           cook_plane_grid   1  nx=5 ny=5
 cook_plane_grid_2           cook_plane_grid   1  nx=8 ny=8
 thick_tube_coarse           thick_tube        1  h=0.4500
 thick_tube_coarse_tet10     thick_tube        2  h=0.8000

@@ -1,54 +1,99 @@
 #!/usr/bin/env node
 // Measures a results page in headless Chromium with software rendering: size, time until it can be used, pictures a
-// second while every frame is shown in turn.
+// second while every frame is shown in turn. Beside wall time stands the processor time of all of the browser, which
+// a busy machine stretches less, and what an empty page takes.
 //
-//   node viewer/measure.mjs PAGE.html [--size 1600x1000]
-import { existsSync, statSync } from 'node:fs';
+//   node viewer/measure.mjs PAGE.html [--size 1600x1000] [--seconds 4]
+import { existsSync, readFileSync, readdirSync, statSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { Browser, MISSING, findChromium } from './chromium.mjs';
 
-const args = process.argv.slice(2);
-const at = args.indexOf('--size');
-const [width, height] = at < 0 ? [1600, 1000] : args.splice(at, 2)[1].split('x').map(Number);
-const [file] = args;
-if (!file || !existsSync(file) || !(width > 0 && height > 0)) {
-  console.error('measure: usage: measure.mjs PAGE.html [--size WxH]');
-  process.exit(2);
+function fail(message, code) {
+  console.error(`measure: ${message}`);
+  process.exit(code);
 }
-if (!findChromium()) {
-  console.error(`measure: ${MISSING}`);
-  process.exit(3);
+
+const USAGE = 'usage: measure.mjs PAGE.html [--size WxH] [--seconds N]';
+const files = [];
+let [width, height] = [1600, 1000];
+let seconds = 4;
+const args = process.argv.slice(2);
+while (args.length > 0) {
+  const arg = args.shift();
+  if (arg === '--size') [width, height] = (args.shift() ?? '').split('x').map(Number);
+  else if (arg === '--seconds') seconds = Number(args.shift());
+  else if (arg.startsWith('--')) fail(`unknown option ${arg}; ${USAGE}`, 2);
+  else files.push(arg);
+}
+if (files.length !== 1 || !existsSync(files[0]) || !(width > 0 && height > 0 && seconds > 0)) fail(USAGE, 2);
+if (!findChromium()) fail(MISSING, 3);
+
+/** Processor time [s] of the browser and its helpers so far; NaN where there is no /proc. */
+function processorTime(group) {
+  let ticks = NaN;
+  try {
+    for (const entry of readdirSync('/proc')) {
+      if (!/^\d+$/.test(entry)) continue;
+      try {
+        const text = readFileSync(`/proc/${entry}/stat`, 'utf8');
+        const fields = text.slice(text.lastIndexOf(')') + 2).split(' ');
+        if (Number(fields[2]) !== group) continue;
+        ticks = (Number.isNaN(ticks) ? 0 : ticks) + Number(fields[11]) + Number(fields[12]);
+      } catch { /* it has ended */ }
+    }
+  } catch { /* not Linux */ }
+  return ticks / 100;
 }
 
 const browser = await Browser.launch();
+const spent = () => processorTime(browser.child.pid);
+
+/** Opens a page and waits for it. */
+async function open(url, ready) {
+  const wall = performance.now(), cpu = spent();
+  const page = await browser.open(url, { width, height });
+  await page.waitFor(ready);
+  return { page, wall: (performance.now() - wall) / 1000, cpu: spent() - cpu };
+}
+
+const text = ({ wall, cpu }) => `${wall.toFixed(2)} s${Number.isNaN(cpu) ? '' : `, ${cpu.toFixed(2)} s of processor time`}`;
+
 try {
-  const start = performance.now();
-  const page = await browser.open(`${pathToFileURL(resolve(file))}#`, { width, height });
-  await page.waitFor('window.isochorReady === true');
-  const opened = performance.now() - start;
+  const drawn = 'requestAnimationFrame(() => requestAnimationFrame(() => { window.drawn = true; }))';
+  const empty = await open(`data:text/html,<p>empty</p><script>${drawn}</script>`, 'window.drawn === true');
+  await empty.page.close();
+  const opened = await open(`${pathToFileURL(resolve(files[0]))}#`, 'window.isochorReady === true');
+  const { page } = opened;
   const error = await page.evaluate('window.isochorError ?? null');
   if (error) throw new Error(error);
-  const played = await page.evaluate(`(async () => {
+  // Each picture goes the whole way, to the window: the browser asks for the next when it has shown the last.
+  const play = (length) => page.evaluate(`(async () => {
     const viewer = window.isochorViewer, { stage, run, state } = viewer;
     const gl = stage.renderer?.getContext?.();
     const pixel = new Uint8Array(4);
     let pictures = 0;
     const start = performance.now();
-    while (performance.now() - start < 4000) {
+    while (performance.now() - start < ${1000 * length}) {
+      await new Promise((shown) => requestAnimationFrame(shown));
       state.frame = pictures % run.frameCount;
       await viewer.showFrame();
       stage.draw();
-      // Waits until it has been drawn.
       gl?.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
       ++pictures;
     }
-    return { seconds: (performance.now() - start) / 1000, pictures, frames: run.frameCount, waits: Boolean(gl) };
+    return { seconds: (performance.now() - start) / 1000, pictures, frames: run.frameCount };
   })()`);
+  await play(1); // unpacks frames, and the renderer compiles what it needs
+  const before = spent();
+  const played = await play(seconds);
+  const each = (spent() - before) / played.pictures;
   const triangles = await page.evaluate('window.isochorViewer.stage.renderer?.info?.render?.triangles ?? 0');
-  console.log(`size       ${(statSync(file).size / 1e6).toFixed(2)} MB`);
-  console.log(`opens in   ${(opened / 1000).toFixed(2)} s`);
-  console.log(`plays      ${(played.pictures / played.seconds).toFixed(1)} pictures a second, ${played.frames} frames, ${triangles} triangles drawn, ${width} x ${height}${played.waits ? '' : ' (not waited for)'}`);
+  console.log(`size       ${(statSync(files[0]).size / 1e6).toFixed(2)} MB`);
+  console.log(`empty page ${text(empty)}`);
+  console.log(`opens in   ${text(opened)}`);
+  console.log(`plays      ${(played.pictures / played.seconds).toFixed(1)} pictures a second, ${played.frames} frames, `
+    + `${triangles} triangles drawn, ${width} x ${height}${Number.isNaN(each) ? '' : `, ${(1000 * each).toFixed(0)} ms of processor time each`}`);
 } finally {
   await browser.close();
 }

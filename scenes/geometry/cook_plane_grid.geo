@@ -6,7 +6,7 @@
 // z = 1 mm), edges (upper and lower). For even ny the probe (48, 52) mm is a node.
 SetFactory("Built-in");
 DefineConstant[ nx = {6, Name "Parameters/boxes along"} ];
-DefineConstant[ ny = {4, Name "Parameters/boxes across"} ];
+DefineConstant[ ny = {6, Name "Parameters/boxes across"} ];
 Include "options.geo";
 
 mm = 1e-3;
