@@ -51,7 +51,7 @@ class Newton : public SaddlePoint {
   double merit(const SaddleProblem& p, double tau, std::span<const double> lambda) const;
   double merit_slope(std::span<const double> lambda);
   double try_step(const SaddleProblem& p, double tau, std::span<const Vec3> x, std::span<const double> lambda,
-                  SaddleReport& report, bool renew_lag = false);
+                  SaddleReport& report);
   bool may_venture() const;
   void venture(std::span<const Vec3> x, std::span<const double> lambda, double enough, double excess);
   bool settle_venture(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda,
