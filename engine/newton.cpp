@@ -202,17 +202,15 @@ double Newton::merit(const SaddleProblem& p, double tau, std::span<const double>
   return sum;
 }
 
-// Moves the trial point to tau along the direction and evaluates there, with the lag of the iteration or one
-// of its own.
+// Moves the trial point to tau along the direction and evaluates there.
 double Newton::try_step(const SaddleProblem& p, double tau, std::span<const Vec3> x,
-                        std::span<const double> lambda, SaddleReport& report, bool renew_lag) {
+                        std::span<const double> lambda, SaddleReport& report) {
   const Stopwatch watch(seconds_.line_search);
   ++report.trials;
   for (std::size_t i = 0; i < x.size(); ++i) x_trial_[i] = x[i] + tau * dx_[i];
   for (std::size_t r = 0; r < lambda.size(); ++r) {
     lambda_trial_[r] = lambda[r] + tau * (lambda_new_[r] - lambda[r]);
   }
-  if (renew_lag) assembly_.renew_lag(x_trial_, lambda_trial_, p.prescribed);
   assembly_.evaluate(Want::gradient, Definiteness::exact, x_trial_, lambda_trial_, p.prescribed);
   assemble_residual(p, x_trial_, lambda_trial_);
   return merit(p, tau, lambda_trial_);
@@ -394,18 +392,17 @@ bool Newton::correct(const SaddleProblem& p, const SaddleOptions& options, std::
   if (!options.corrections || !full_step_ || report.force_residual > 1e-2 || report.row_residual > 1e-2)
     return false;
   const bool lags = system_->has_lag();
-  // The lag is renewed with every one of them: what they converge to is the coupled problem.
-  if (lags) {
-    assembly_.renew_lag(x, lambda, p.prescribed);
-    assembly_.evaluate(Want::gradient, Definiteness::exact, x, lambda, p.prescribed);
-    assemble_residual(p, x, lambda);
-    if (balanced(p, options, x, lambda, report)) return true;
-  }
   for (int k = 0; k < (lags ? 12 : 6); ++k) {
+    if (lags) {
+      assembly_.renew_lag(x, lambda, p.prescribed);
+      assembly_.evaluate(Want::gradient, Definiteness::exact, x, lambda, p.prescribed);
+      assemble_residual(p, x, lambda);
+      if (balanced(p, options, x, lambda, report)) return true;
+    }
     position_gap(p, x);
     if (has_gap_ || !direction(lambda, report)) return false;
     const double force = report.force_residual, row = report.row_residual;
-    if (!std::isfinite(try_step(p, 1, x, lambda, report, lags))) return false;
+    if (!std::isfinite(try_step(p, 1, x, lambda, report))) return false;
     ++report.corrections;
     const bool done = balanced(p, options, x_trial_, lambda_trial_, report);
     const bool pays = report.force_residual <= std::max(worthwhile * force, options.force_tolerance) &&
@@ -413,7 +410,7 @@ bool Newton::correct(const SaddleProblem& p, const SaddleOptions& options, std::
     if (!pays) return false;
     std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
     keep_multipliers(p, x, lambda);
-    if (done) return true;
+    if (done && !lags) return true;
   }
   return false;
 }

@@ -51,7 +51,7 @@ class Newton : public SaddlePoint {
   double merit(const SaddleProblem& p, double tau, std::span<const double> lambda) const;
   double merit_slope(std::span<const double> lambda);
   double try_step(const SaddleProblem& p, double tau, std::span<const Vec3> x, std::span<const double> lambda,
-                  SaddleReport& report, bool renew_lag = false);
+                  SaddleReport& report);
   void rest_gap(const SaddleReport& report);
   bool out_of_patience(const SaddleOptions& options, int iteration, int factorizations) const;
   bool may_venture() const;
