@@ -119,7 +119,7 @@ SolveReport DirectSolver::refine_as_needed(std::span<const double> b, std::span<
 SolveReport DirectSolver::refine(std::span<const double> b, std::span<double> x) {
   SolveReport report;
   report.residual = std::numeric_limits<double>::infinity();
-  contraction_ = 0;
+  residual_ratio_ = 0;
   const double b_norm = max_norm(b);
   std::copy(b.begin(), b.end(), x.begin());
   if (!apply_inverse(x)) return report;
@@ -138,7 +138,7 @@ SolveReport DirectSolver::refine(std::span<const double> b, std::span<double> x)
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction_[i];
     const double now = relative(x);
     ++report.refinements;
-    if (before > near_rounding) contraction_ = std::max(contraction_, residual_norm_ / norm_before);
+    if (before > near_rounding) residual_ratio_ = std::max(residual_ratio_, residual_norm_ / norm_before);
     if (!(now < before)) {  // worse, or NaN: keep what was there
       std::copy(best_.begin(), best_.end(), x.begin());
       residual_norm_ = norm_before;

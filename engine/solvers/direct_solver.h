@@ -43,7 +43,7 @@ class DirectSolver : public LinearSolver {
   // Of the last refine(): the largest ratio of residuals, in the norm of the right-hand side, from one
   // refinement to the next; 0 when none was needed beyond rounding. The relative residual may fall although
   // nothing converges, when the solution grows beyond bounds.
-  double contraction() const { return contraction_; }
+  double residual_ratio() const { return residual_ratio_; }
   double last_residual_norm() const { return residual_norm_; }
   int max_refinements = 5;
   // Where refinement ends: by default where it would only shuffle the last bits.
@@ -58,7 +58,7 @@ class DirectSolver : public LinearSolver {
   const SymmetricPattern* pattern_ = nullptr;
   std::span<const double> values_;
   std::vector<double> residual_, correction_, best_;
-  double norm_ = 0, residual_norm_ = 0, contraction_ = 0;
+  double norm_ = 0, residual_norm_ = 0, residual_ratio_ = 0;
   bool factored_ = false;
 };
 

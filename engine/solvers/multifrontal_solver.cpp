@@ -13,7 +13,7 @@ namespace {
 // A pivot below this fraction of the norm has lost most of its digits.
 constexpr double smallest_single = 1e-6, smallest_double = 1e-13;
 // Less of a reduction of the residual by a refinement, and an eigenvalue may have changed its sign.
-constexpr double slowest_contraction = 0.25;
+constexpr double largest_ratio = 0.25;
 // Where refinement ends. In single precision each costs a solve, and brings three digits.
 constexpr double enough_for_single = 1e-12;
 constexpr double rounding_level = 2 * std::numeric_limits<double>::epsilon();
@@ -98,6 +98,7 @@ FactorReport MultifrontalSolver::factor_from(Rung rung) {
     target_residual = rung_ == Rung::single ? enough_for_single : rounding_level;
     if (!factor_fronts(report)) continue;
     reported_ = report.negative_pivots;
+    lowest_ = std::max(lowest_, rung_);
     ++used_[static_cast<int>(rung_)];
     return report;
   }
@@ -117,7 +118,7 @@ bool MultifrontalSolver::factor_fronts(FactorReport& report) {
 }
 
 bool MultifrontalSolver::doubtful() const {
-  return rung_ != Rung::pivoting && contraction() > slowest_contraction;
+  return rung_ != Rung::pivoting && residual_ratio() > largest_ratio;
 }
 
 bool MultifrontalSolver::probe() {
