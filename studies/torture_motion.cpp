@@ -20,7 +20,7 @@ TortureResult refuse(TortureResult out, std::string reason) {
   return out;
 }
 
-TortureResult ball(const TortureSettings& s, const std::string& mesh) {
+TortureResult ball(const TortureSettings& s, const std::string& mesh, int most_steps) {
   TortureBench bench(s);
   bench.add_body(read_mesh(scenes_folder() + "/meshes/" + mesh + ".msh"),
                  neo_hookean(torture_constants(s, 1e5)), 1000);
@@ -34,7 +34,7 @@ TortureResult ball(const TortureSettings& s, const std::string& mesh) {
   if (const auto r = world.set_velocities(bench.body(), down); !r) return bench.march(1, 1);
   const double before = energy(world);
   // Down and up again takes some 30 ms.
-  TortureResult out = bench.march(s.step, std::clamp(static_cast<int>(0.08 / s.step), 5, 100));
+  TortureResult out = bench.march(s.step, std::clamp(static_cast<int>(0.08 / s.step), 5, most_steps));
   if (out.verdict != TortureVerdict::solved) return out;
   out.drift = energy(world) / before - 1;
   double lowest = 1;
@@ -76,10 +76,10 @@ double roughness(const World& world, BodyId body) {
 }  // namespace
 
 TortureResult ball_coarse(const TortureSettings& s) {
-  return ball(s, "ball_small");
+  return ball(s, "ball_small", 100);
 }
 TortureResult ball_fine(const TortureSettings& s) {
-  return ball(s, "ball");
+  return ball(s, "ball", 30);
 }
 
 TortureResult swing(const TortureSettings& s) {

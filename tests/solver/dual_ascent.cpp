@@ -12,14 +12,14 @@ using namespace isochor;
 using namespace test;
 
 struct Climb {
-  int most = 0;  // dual steps until 1 % of volume error, the largest number of all load steps
+  int most = 0;  // dual steps until `level` of volume error, the largest number of all load steps
   int all = 0;   // of all load steps together
   SaddleStatus status = SaddleStatus::converged;
 };
 
-// Ten load steps to 4 kPa. `moderate`: a complete material with Poisson's ratio 0.4 under hard rows, as in
+// `load_steps` to 4 kPa. `moderate`: a complete material with Poisson's ratio 0.4 under hard rows, as in
 // the paper; otherwise a distortional one whose rows are augmented.
-Climb inflate(bool moderate, DualAscentOptions ascent) {
+Climb inflate(bool moderate, DualAscentOptions ascent, int load_steps = 10, double level = 0.01) {
   BodyDef body;
   body.mesh = scene_mesh("bubble");
   body.element = Element::tet4;
@@ -45,8 +45,8 @@ Climb inflate(bool moderate, DualAscentOptions ascent) {
   std::vector<double> lambda(at(s.rows()), 0.0), phi(at(s.rows()));
   ProblemData data(s);
   Climb out;
-  for (int step = 1; step <= 10; ++step) {
-    data.at_time(s, 0.1 * step);
+  for (int step = 1; step <= load_steps; ++step) {
+    data.at_time(s, static_cast<double>(step) / load_steps);
     int steps = 0;
     bool close = false;
     method.progress = [&](int k, double, double) {
@@ -54,7 +54,7 @@ Climb inflate(bool moderate, DualAscentOptions ascent) {
       double error = 0;
       for (const double p : phi) error += std::abs(p);
       if (!close) steps = k;
-      close = close || error < 0.01 * volume;
+      close = close || error < level * volume;
     };
     method.cancelled = [&] { return close; };
     const SaddleReport r = method.solve(data.problem(), {}, x, lambda);
@@ -68,17 +68,18 @@ Climb inflate(bool moderate, DualAscentOptions ascent) {
 }  // namespace
 
 TEST_CASE("conjugate directions need fewer steps than steepest ones") {
+  // The whole pressure at once, where the steepest ascent has some way to go.
   for (const bool moderate : {true, false}) {
     DualAscentOptions steepest{.augmented = !moderate, .scaled = !moderate}, conjugate = steepest;
     conjugate.conjugate = true;
-    const Climb a = inflate(moderate, steepest), b = inflate(moderate, conjugate);
-    INFO((moderate ? "moderate Poisson's ratio: " : "augmented rows: ")
-         << "steepest " << a.most << " at most, " << a.all << " in all, conjugate " << b.most << ", "
-         << b.all);
-    CHECK(b.status == SaddleStatus::converged);
-    CHECK(b.most <= a.most);
-    CHECK(b.all < a.all);
-    if (moderate) CHECK(b.most < a.most);
+    for (const double level : {1e-2, 1e-4}) {
+      const Climb a = inflate(moderate, steepest, 1, level), b = inflate(moderate, conjugate, 1, level);
+      INFO((moderate ? "moderate Poisson's ratio" : "augmented rows")
+           << ", volume error " << level << ": steepest " << a.most << ", conjugate " << b.most);
+      CHECK(b.status == SaddleStatus::converged);
+      CHECK(b.most <= a.most);
+      if (moderate || level < 1e-2) CHECK(b.most < a.most);
+    }
   }
 }
 

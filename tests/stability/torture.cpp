@@ -30,7 +30,7 @@ TortureSettings settings(double poisson, double step, double load, Element eleme
 
 constexpr Element kEdge = Element::tet4_edge_smoothed, kTet4 = Element::tet4;
 
-void all_solved(const Sample& sample, int repeats = 10) {
+void all_solved(const Sample& sample, int repeats = 10, bool at_once = false) {
   const TortureCase* c = find_torture_case(sample.name);
   REQUIRE(c != nullptr);
   for (int k = 0; k < repeats; ++k) {
@@ -44,6 +44,7 @@ void all_solved(const Sample& sample, int repeats = 10) {
                      << r.volume_error);
     CHECK(r.verdict == TortureVerdict::solved);
     CHECK(r.rescues == 0);
+    if (at_once) CHECK(r.cutbacks == 0);
   }
 }
 
@@ -56,6 +57,24 @@ TEST_CASE("large deformations in one load step at nu 0.5") {
   all_solved({"stretch", settings(0.5, 0, 1, kEdge)});
   all_solved({"compression", settings(0.5, 0, 0.6, kTet4)});
   all_solved({"puck", settings(0.5, 0, 0.6, kTet4)});
+}
+
+TEST_CASE("long prescribed ways are made within one increment at nu 0.5") {
+  all_solved({"stretch", settings(0.5, 0, 1, Element::tet10)}, 2, true);
+  all_solved({"stretch", settings(0.5, 0, 1, kEdge)}, 5, true);
+  all_solved({"compression", settings(0.5, 0, 1, kTet4)}, 5, true);
+  all_solved({"compression", settings(0.5, 0, 1, kEdge)}, 3, true);
+  all_solved({"compression", settings(0.5, 0, 1, kEdge, Method::dual_gradients)}, 1, true);
+}
+
+TEST_CASE("balls bounce without a node below the floor and without energy from nowhere") {
+  for (const Element element : {kTet4, kEdge, Element::tet10})
+    all_solved({"ball", settings(0.5, 8e-3, 1, element)}, 1);
+  all_solved({"ball", settings(0.5, 1e-3, 1, kEdge)}, 1);
+}
+
+TEST_CASE("a bar swings undamped for a thousand steps without a pattern from node to node") {
+  for (const Element element : {kTet4, kEdge}) all_solved({"swing", settings(0.5, 1e-3, 1, element)}, 1);
 }
 
 TEST_CASE("time steps from a tenth of a millisecond to a tenth of a second") {
