@@ -100,7 +100,7 @@ Result<void> World::Impl::make_method(SystemParts parts) {
     return Error{"world: method position_based has no answer for this scene: " + what +
                  "; use another method"};
   }
-  if (static_cast<SolverKind>(options.solver) == SolverKind::cholmod_supernodal && !system->kept_rows().empty()) {
+  if (options.solver == Solver::cholmod_supernodal && !system->kept_rows().empty()) {
     return Error{"world: solver cholmod_supernodal factors positive definite matrices, and " +
                  std::to_string(system->kept_rows().size()) +
                  " rows are in the matrix; use method condensation with element rows and nu < 0.5, method "
