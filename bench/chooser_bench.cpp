@@ -29,13 +29,13 @@ struct Choice {
 };
 constexpr Choice kChoices[] = {
     {"automatic", Method::automatic, Solver::automatic},
-    {"saddle_point, multifrontal", Method::saddle_point, static_cast<Solver>(5)},
-    {"condensation, multifrontal", Method::condensation, static_cast<Solver>(5)},
-    {"dual_gradients, multifrontal", Method::dual_gradients, static_cast<Solver>(5)},
-    {"augmented_gradients, multifrontal", Method::augmented_gradients, static_cast<Solver>(5)},
+    {"saddle_point, multifrontal", Method::saddle_point, Solver::multifrontal},
+    {"condensation, multifrontal", Method::condensation, Solver::multifrontal},
+    {"dual_gradients, multifrontal", Method::dual_gradients, Solver::multifrontal},
+    {"augmented_gradients, multifrontal", Method::augmented_gradients, Solver::multifrontal},
     {"saddle_point, iterative", Method::saddle_point, Solver::iterative},
     {"saddle_point, mumps", Method::saddle_point, Solver::mumps},
-    {"condensation, cholmod_supernodal", Method::condensation, static_cast<Solver>(6)}};
+    {"condensation, cholmod_supernodal", Method::condensation, Solver::cholmod_supernodal}};
 
 struct Run {
   bool refused = false, converged = true;

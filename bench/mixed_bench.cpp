@@ -32,13 +32,13 @@ struct Case {
   bool mixed;
   double poisson;
 };
-constexpr Case kCases[] = {{"multifrontal", static_cast<Solver>(5), false, 0.4999},
+constexpr Case kCases[] = {{"multifrontal", Solver::multifrontal, false, 0.4999},
                            {"mumps", Solver::mumps, false, 0.4999},
-                           {"cholmod_supernodal", static_cast<Solver>(6), false, 0.4999},
-                           {"multifrontal", static_cast<Solver>(5), false, 0.45},
-                           {"cholmod_supernodal", static_cast<Solver>(6), false, 0.45},
-                           {"multifrontal", static_cast<Solver>(5), true, 0.4999},
-                           {"multifrontal", static_cast<Solver>(5), true, 0.5},
+                           {"cholmod_supernodal", Solver::cholmod_supernodal, false, 0.4999},
+                           {"multifrontal", Solver::multifrontal, false, 0.45},
+                           {"cholmod_supernodal", Solver::cholmod_supernodal, false, 0.45},
+                           {"multifrontal", Solver::multifrontal, true, 0.4999},
+                           {"multifrontal", Solver::multifrontal, true, 0.5},
                            {"mumps", Solver::mumps, true, 0.5},
                            {"iterative", Solver::iterative, true, 0.5}};
 

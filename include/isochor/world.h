@@ -67,8 +67,16 @@ struct BodyDef {
 };
 
 // Who solves the linear systems. All but `iterative` factor the matrix; that one iterates, with memory linear
-// in the mesh (docs/solver.md).
-enum class Solver : std::uint8_t { automatic, mumps, cholmod, eigen, iterative };
+// in the mesh (docs/solver.md). What a build does not have is refused when the world is compiled.
+enum class Solver : std::uint8_t {
+  automatic,
+  mumps,
+  cholmod,
+  eigen,
+  iterative,
+  multifrontal,       // our own, in single precision where that is good enough
+  cholmod_supernodal  // positive definite matrices only: no rows in the matrix. GPL, off by default
+};
 
 // How the saddle point of a step is solved. All but `position_based` end at the same solution; docs/solver.md
 // compares their cost.

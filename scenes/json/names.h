@@ -56,8 +56,9 @@ ISOCHOR_WORDS(CableControl, 3, {CableControl::tension, "tension"}, {CableControl
 ISOCHOR_WORDS(AnalysisType, 2, {AnalysisType::statics, "static"}, {AnalysisType::dynamics, "dynamic"});
 ISOCHOR_WORDS(Definiteness, 3, {Definiteness::exact, "exact"}, {Definiteness::projected, "projected"},
               {Definiteness::absolute, "absolute"});
-ISOCHOR_WORDS(Solver, 5, {Solver::automatic, "automatic"}, {Solver::mumps, "mumps"},
-              {Solver::cholmod, "cholmod"}, {Solver::eigen, "eigen"}, {Solver::iterative, "iterative"});
+ISOCHOR_WORDS(Solver, 7, {Solver::automatic, "automatic"}, {Solver::mumps, "mumps"},
+              {Solver::cholmod, "cholmod"}, {Solver::eigen, "eigen"}, {Solver::iterative, "iterative"},
+              {Solver::multifrontal, "multifrontal"}, {Solver::cholmod_supernodal, "cholmod_supernodal"});
 ISOCHOR_WORDS(Component, 4, {Component::magnitude, "magnitude"}, {Component::x, "x"}, {Component::y, "y"},
               {Component::z, "z"});
 ISOCHOR_WORDS(ObstacleShape, 7, {ObstacleShape::plane, "plane"}, {ObstacleShape::sphere, "sphere"},

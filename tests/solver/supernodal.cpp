@@ -118,7 +118,7 @@ TEST_CASE("supernodal factors find the equilibrium of condensed and dual systems
                         Case{Method::augmented_gradients, VolumeSpace::node, 0.5},
                         Case{Method::augmented_ascent, VolumeSpace::node, 0.4999}}) {
     const Outcome reference = block(Solver::eigen, Method::saddle_point, c.space, c.poisson);
-    const Outcome other = block(static_cast<Solver>(6), c.method, c.space, c.poisson);
+    const Outcome other = block(Solver::cholmod_supernodal, c.method, c.space, c.poisson);
     INFO(other.method << ": " << other.report.reason);
     REQUIRE(other.report.status == StepStatus::converged);
     CHECK(other.method.find("cholmod_supernodal") != std::string::npos);
@@ -129,7 +129,8 @@ TEST_CASE("supernodal factors find the equilibrium of condensed and dual systems
 TEST_CASE("a stiffness that is not definite is mended for supernodal factors as for others") {
   if (!built_in()) return;
   const Outcome reference = block(Solver::eigen, Method::condensation, VolumeSpace::element, 0.4, 0.35);
-  const Outcome other = block(static_cast<Solver>(6), Method::condensation, VolumeSpace::element, 0.4, 0.35);
+  const Outcome other =
+      block(Solver::cholmod_supernodal, Method::condensation, VolumeSpace::element, 0.4, 0.35);
   INFO(other.report.reason << other.report.shifted);
   REQUIRE(reference.report.status == StepStatus::converged);
   REQUIRE(other.report.status == StepStatus::converged);
@@ -142,13 +143,13 @@ TEST_CASE("a stiffness that is not definite is mended for supernodal factors as 
 TEST_CASE("supernodal factors and kept rows are refused with the remedy") {
   if (!built_in()) {
     WorldOptions options = test::static_options();
-    options.solver = static_cast<Solver>(6);
+    options.solver = Solver::cholmod_supernodal;
     const auto world = World::create(options);
     REQUIRE_FALSE(world);
     CHECK(world.error().find("not part of this build") != std::string::npos);
     return;
   }
-  const Outcome refused = block(static_cast<Solver>(6), Method::saddle_point, VolumeSpace::node, 0.5);
+  const Outcome refused = block(Solver::cholmod_supernodal, Method::saddle_point, VolumeSpace::node, 0.5);
   CHECK(refused.report.status == StepStatus::invalid);
   CHECK(refused.report.reason.find("dual_gradients") != std::string::npos);
 }
