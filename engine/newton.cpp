@@ -348,6 +348,10 @@ bool Newton::search(const SaddleProblem& p, std::span<Vec3> x, std::span<double>
     value = other;
     tau = next;
   }
+  // Stencils that follow what is close may have a small jump where what is nearest changes: a search that
+  // goes downhill creeps up to it and stays. Better to say so, and have them look again.
+  creeps_ = s.has_followers() && tau < 0.01 * most ? creeps_ + 1 : 0;
+  if (creeps_ > 2) return false;
   std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
   keep_multipliers(p, x, lambda);
   report.step = tau * longest;
@@ -408,6 +412,7 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
   venture_.under_way = false;
   venture_.failed = 0;
   venture_.length = 1;
+  creeps_ = 0;
   definiteness_ = options.definiteness;
   gamma_ = 0.1;
   const System& s = *system_;

@@ -51,6 +51,7 @@ class Newton : public SaddlePoint {
   bool search(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda, SaddleReport& report);
 
   bool full_step_ = false;
+  int creeps_ = 0;  // searches in a row that ended where they began
   // A step that the merit refused and that was taken all the same, until one more Newton step has shown
   // where it leads: where it started, its direction, and the merit that must be reached.
   struct Venture {
