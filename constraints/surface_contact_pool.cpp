@@ -172,10 +172,22 @@ PatchPoint SurfaceContactPool::seen_from(Index s, Index center, std::span<const 
                           std::span(corner).first(around.patch.nodes), around.patch);
 }
 
-// Whether the nearest place is beyond the patch by more than a quarter of a face. Up to there what slides on
-// a flat surface needs no new stencils, which cost an analysis.
-bool SurfaceContactPool::reaches_out(const PatchPoint& near, Index s, Index center) const {
-  return setup_->skin->around(center, s).patch.face > 3 ||
+// Whether the nearest place is beyond the patch by more than a quarter of a face, or by anything where the
+// patch is not flat. Up to there what slides on a flat surface needs no new stencils, which cost an analysis.
+bool SurfaceContactPool::reaches_out(const PatchPoint& near, Index s, Index center,
+                                     std::span<const Vec3> x) const {
+  constexpr double flat = 0.999;  // cosine of 2.5 degrees
+  const Skin::Around around = setup_->skin->around(center, s);
+  const auto normal = [&](const std::array<std::uint8_t, 3>& c) {
+    const Vec3 a = x[at(around.node[c[0]])];
+    return cross(x[at(around.node[c[1]])] - a, x[at(around.node[c[2]])] - a);
+  };
+  const Vec3 middle = normal(around.patch.corner[0]);
+  for (std::size_t t = 1; t < around.patch.triangles; ++t) {
+    const Vec3 n = normal(around.patch.corner[t]);
+    if (!around.patch.side[t] && dot(n, middle) < flat * norm(n) * norm(middle)) return true;
+  }
+  return around.patch.face > 3 ||
          std::any_of(near.weight.begin(), near.weight.end(), [](double w) { return w < -0.25; });
 }
 
@@ -218,19 +230,20 @@ FollowAnswer SurfaceContactPool::followed(const FollowRequest& q) const {
       needed = needed || (inside && target[at(s)] != c);
     }
     if (f.nearest < 0 || seen) continue;
-    // As far away as a patch around it would say: beside a sharp edge that is outside.
-    const PatchPoint there = seen_from(s, f.nearest, q.x);
-    const double gap = there.distance - setup_->offset;
+    // Beside a sharp edge the patch around it says that the point is outside; beyond a corner its planes may
+    // be above a point that is not inside.
+    const double distance = std::max(f.distance, seen_from(s, f.nearest, q.x).distance);
+    const double gap = distance - setup_->offset;
     if (c < 0) {
       needed = needed || gap < (q.solved ? 0 : 0.4 * reach());
       continue;
     }
     const PatchPoint here = seen_from(s, c, q.x);
-    const bool differs = std::abs(there.distance - here.distance) > kSame * skin.size();
+    const bool differs = std::abs(distance - here.distance) > kSame * skin.size();
     if (q.solved)
-      needed = needed || (std::min(there.distance, here.distance) < setup_->offset && differs);
+      needed = needed || (std::min(distance, here.distance) < setup_->offset && differs);
     else
-      needed = needed || (gap < 0.4 * reach() && (differs || reaches_out(here, s, c)));
+      needed = needed || (gap < 0.4 * reach() && (differs || reaches_out(here, s, c, q.x)));
   }
   if (!needed) target = base;
   if (target != center_) answer.pool = std::make_shared<SurfaceContactPool>(setup_, std::move(target));

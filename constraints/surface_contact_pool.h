@@ -69,7 +69,7 @@ class SurfaceContactPool final : public StencilPool {
   Mat3 axes(Index s, std::span<const Vec3> x) const;
   // The nearest place of a patch around a triangle.
   PatchPoint seen_from(Index s, Index center, std::span<const Vec3> x) const;
-  bool reaches_out(const PatchPoint& near, Index s, Index center) const;
+  bool reaches_out(const PatchPoint& near, Index s, Index center, std::span<const Vec3> x) const;
   double reach() const { return setup_->offset + 0.75 * setup_->skin->size(); }
 
   std::shared_ptr<const Setup> setup_;

@@ -355,7 +355,9 @@ bool Newton::search(const SaddleProblem& p, std::span<Vec3> x, std::span<double>
   report.step = tau * longest;
   full_step_ = tau == 1;
   resting_ = resting_ || (has_gap_ && tau < 1);
-  creeping_ = tau < 1e-3 ? creeping_ + 1 : 0;
+  // Stencils that follow what is close may have a small jump where what is nearest changes: a search that
+  // goes downhill creeps up to it and stays, until they look again.
+  creeping_ = tau < (s.has_followers() ? 0.01 * most : 1e-3) ? creeping_ + 1 : 0;
   return true;
 }
 
@@ -485,7 +487,7 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     if (!(venture_.under_way && settle_venture(p, x, lambda, report)) && !search(p, x, lambda, report))
       return fail(SaddleStatus::line_search_failed);
     full_steps_ = static_cast<std::uint8_t>(full_steps_ << 1 | (full_step_ ? 1 : 0));
-    // Steps that short lead nowhere; the work is better spent on a shorter increment.
+    // Steps that short lead nowhere; the work is better spent on a shorter increment, or on other stencils.
     if (creeping_ == 3) return fail(SaddleStatus::line_search_failed);
     const bool done = balanced(p, options, x, lambda, report);
     if (progress) progress(report.iterations, report.force_residual, report.row_residual);

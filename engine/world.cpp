@@ -323,6 +323,16 @@ bool World::Impl::look_back(double t, double h) {
   return jumps;
 }
 
+namespace {
+
+// Within a percent of balance, and no step leads further.
+bool stuck_close_by(const SaddleReport& r) {
+  constexpr double close = 1e-2;
+  return r.status == SaddleStatus::line_search_failed && r.force_residual < close && r.row_residual < close;
+}
+
+}  // namespace
+
 SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
   constexpr int most_looks = 8;
   const double h_evaluated = options.scheme->evaluated_at() * h, t_new = state.t + h_evaluated;
@@ -349,6 +359,14 @@ SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
     SaddleReport solved = solve_increment(problem, allowance, from_guess);
     solved.add_work(report);
     report = std::move(solved);
+    if (stuck_close_by(report) && look + 1 < most_looks) {
+      // What is nearest has changed on the way: stencils around it have no jump there.
+      around = look_around(x_trial, false);
+      if (around.changed && around.crossed == 0) {
+        from_guess = false;
+        continue;
+      }
+    }
     if (report.status != SaddleStatus::converged) break;
     around = look_around(x_trial, true);
     if (around.passing > 0 || (around.crossed > 0 && look + 1 == most_looks))
