@@ -19,6 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "options.h"
+
 namespace {
 
 using namespace isochor;
@@ -114,6 +116,7 @@ bool run_apart(Solver solver, const char* name, int width, VolumeSpace space) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  isochor::bench::check_options(argc, argv, {"--quick"}, {"--element"}, true);
   bool quick = false;
   VolumeSpace space = VolumeSpace::node;
   std::vector<std::string> names;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/material_response.h"
+#include "options.h"
 
 namespace {
 
@@ -254,6 +255,7 @@ bool draw_picture(const Picture& picture, const std::string& folder) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  isochor::bench::check_options(argc, argv, {}, {}, true);
   const std::string folder = argc > 1 ? argv[1] : "docs/figures/materials";
   std::error_code error;
   std::filesystem::create_directories(folder, error);

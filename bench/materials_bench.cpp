@@ -21,6 +21,7 @@
 #include "engine/material_model.h"
 #include "isochor/generate.h"
 #include "isochor/materials.h"
+#include "options.h"
 
 namespace {
 
@@ -151,6 +152,7 @@ void bench_elements(int repeats) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  isochor::bench::check_options(argc, argv, {}, {"--repeats"});
   int repeats = 200;
   for (int i = 1; i + 1 < argc; ++i) {
     if (std::strcmp(argv[i], "--repeats") == 0) repeats = std::max(1, std::atoi(argv[i + 1]));

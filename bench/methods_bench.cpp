@@ -12,6 +12,7 @@
 #include "isochor/effects.h"
 #include "isochor/generate.h"
 #include "isochor/schemes.h"
+#include "options.h"
 #include "scenes/library.h"
 #include "scenes/run.h"
 
@@ -96,6 +97,7 @@ void robot(const Way& way, const char* name) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  isochor::bench::check_options(argc, argv, {"--quick"}, {"--method"});
   bool quick = false;
   std::string only;
   for (int i = 1; i < argc; ++i) {

@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "bench/robustness_cases.h"
+#include "options.h"
 
 namespace {
 
@@ -104,6 +105,7 @@ void print_recoveries(const char* title, int divisions, int seeds, const std::st
 }  // namespace
 
 int main(int argc, char** argv) {
+  isochor::bench::check_options(argc, argv, {}, {"--seeds", "--divisions", "--only", "--twist"});
   const int seeds = number_after(argc, argv, "--seeds", 100);
   const int divisions = number_after(argc, argv, "--divisions", 3);
   std::string only;

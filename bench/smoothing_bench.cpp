@@ -17,6 +17,7 @@
 
 #include "engine/elements/reference_element.h"
 #include "isochor/generate.h"
+#include "options.h"
 
 namespace {
 
@@ -161,6 +162,7 @@ void spectrum(const Matrix& smoothed, const Matrix& plain, double& least, int& v
 }  // namespace
 
 int main(int argc, char** argv) {
+  isochor::bench::check_options(argc, argv, {}, {"--divisions"});
   int divisions = 2;
   for (int i = 1; i + 1 < argc; ++i) {
     if (std::strcmp(argv[i], "--divisions") == 0) divisions = std::max(1, std::atoi(argv[i + 1]));

@@ -18,6 +18,8 @@
 #include <string>
 #include <vector>
 
+#include "options.h"
+
 namespace {
 
 using namespace isochor;
@@ -157,6 +159,7 @@ void bench_robot(const std::string& file, Element element, int threads, int step
 }  // namespace
 
 int main(int argc, char** argv) {
+  isochor::bench::check_options(argc, argv, {"--quick"}, {"--meshes", "--threads"});
   std::string meshes = "scenes/meshes";
   int threads = 0;
   bool quick = false;

@@ -14,6 +14,7 @@
 #include "bench/residual_newton.h"
 #include "bench/robustness_cases.h"
 #include "materials/stress_baselines.h"
+#include "options.h"
 
 namespace {
 
@@ -215,6 +216,7 @@ int number_after(int argc, char** argv, const char* flag, int otherwise) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  isochor::bench::check_options(argc, argv, {}, {"--radius", "--steps", "--stretch", "--only"});
   Setting setting;
   setting.radius = number_after(argc, argv, "--radius", 13);
   setting.steps = number_after(argc, argv, "--steps", 12);

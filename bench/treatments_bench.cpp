@@ -11,6 +11,8 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "options.h"
+
 namespace {
 
 using namespace isochor;
@@ -82,6 +84,7 @@ void run(const Case& c, bool quick) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  isochor::bench::check_options(argc, argv, {"--quick"}, {});
   const bool quick = argc > 1 && std::strcmp(argv[1], "--quick") == 0;
   using T = RowTreatment;
   const Case cases[] = {

@@ -16,6 +16,8 @@
 #include <ctime>
 #include <vector>
 
+#include "options.h"
+
 namespace {
 
 using namespace isochor;
@@ -95,6 +97,7 @@ double median(std::vector<double> v) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  isochor::bench::check_options(argc, argv, {"--quick"}, {"--pairs", "--threads"});
   bool quick = false;
   int pairs = 3, threads = 0;
   for (int i = 1; i < argc; ++i) {
