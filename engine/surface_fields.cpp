@@ -33,6 +33,9 @@ void even_out(const Mesh& mesh, std::span<const double> area, std::vector<Vec3>&
         node[3 + k] = at(mesh.cells[first + middle_of(corner[k], corner[(k + 1) % 3])]);
       }
       if (!std::all_of(node.begin() + 3, node.end(), [&](std::size_t n) { return area[n] > 0; })) continue;
+      // A face that is pressed along one edge only has a neighbor around it that is pressed.
+      if (std::count_if(node.begin() + 3, node.end(), [&](std::size_t n) { return pressure[n] > 0; }) < 2)
+        continue;
       double weight = 0, p = 0;
       Vec3 t{};
       for (std::size_t k = 0; k < 6; ++k) {
