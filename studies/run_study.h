@@ -35,9 +35,9 @@ enum class StudyStatus : std::uint8_t { complete, interrupted, failed };
 
 struct StudyResult {
   StudyStatus status = StudyStatus::failed;
-  std::string reason;  // of a failure: outputs that cannot be written
+  std::string reason;           // of a failure: outputs that cannot be written
   std::vector<Measured> cells;  // those of this run, then what earlier ones left
-  std::size_t total = 0;  // cells of the study
+  std::size_t total = 0;        // cells of the study
   std::size_t kept = 0, not_good = 0;
   double seconds = 0;
 };
