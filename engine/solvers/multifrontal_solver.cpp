@@ -15,7 +15,7 @@ constexpr double smallest_single = 1e-6, smallest_double = 1e-13;
 // Less of a reduction of the residual by a refinement, and an eigenvalue may have changed its sign.
 constexpr double largest_ratio = 0.25;
 // Where refinement ends. In single precision each costs a solve, and brings three digits.
-constexpr double enough_for_single = 1e-12;
+constexpr double enough_for_single = 1e-14;
 constexpr double rounding_level = 2 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
