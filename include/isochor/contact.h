@@ -64,7 +64,7 @@ enum class FrictionCoupling : std::uint8_t {
   lagged,   // these are held within an iteration: symmetric systems with a merit, converging in the pace of
             // the lag
   coupled,  // they are part of the linear system, which is unsymmetric: quadratic convergence, factors (LU)
-            // of about twice the cost, no inertia to watch
+            // of several times the cost, no inertia to watch
 };
 
 // Nodes of a body's surface against one obstacle: they do not enter it, it does not pull, and friction holds
