@@ -88,8 +88,8 @@ struct ContactDef {
   double stick_stiffness = 0;
   FrictionCoupling coupling = FrictionCoupling::lagged;
   // Newton's coefficient of restitution e [-], 0 to 1: what closes at a speed u beyond `restitution_speed`
-  // opens at e u behind the impact. Hard contact in dynamics, each point by itself: a rigid body bounces, of a
-  // soft one the nodes do, while the body behind them is as elastic as it is.
+  // opens at e u behind the impact. Hard contact in dynamics, each point by itself: a rigid body bounces, of
+  // a soft one the nodes do, while the body behind them is as elastic as it is.
   double restitution = 0;
   double restitution_speed = 0.05;  // [m/s]
   InitialOverlap initial_overlap = InitialOverlap::report;

@@ -6,10 +6,11 @@ namespace isochor {
 using namespace programs;
 
 SceneDef finger_lattice(const SceneVariant& v) {
-  SceneDef s = on_mesh("finger_lattice", "Finger in a lattice",
-                       "The bellows of the finger cut out of cubes of 2.5 mm, clamped at one end, hanging under "
-                       "its own weight; the surface moves with the cubes.",
-                       "finger", "finger", v);
+  SceneDef s =
+      on_mesh("finger_lattice", "Finger in a lattice",
+              "The bellows of the finger cut out of cubes of 2.5 mm, clamped at one end, hanging under "
+              "its own weight; the surface moves with the cubes.",
+              "finger", "finger", v);
   LatticeMesh cubes;
   cubes.surface = std::get<MeshFile>(s.bodies[0].mesh).path;
   cubes.spacing = 0.0025;

@@ -19,8 +19,7 @@ struct Compiled {
 };
 // `anchored`: refuse what statics would refuse.
 Compiled compile(const std::vector<isochor::BodyDef>& bodies, const std::vector<isochor::EffectPtr>& effects,
-                 bool anchored = false,
-                 isochor::RowTreatment treatment = isochor::RowTreatment::automatic);
+                 bool anchored = false, isochor::RowTreatment treatment = isochor::RowTreatment::automatic);
 
 // The data of one increment at time t, held in its own arrays: what World::Impl hands to Newton.
 struct ProblemData {
