@@ -14,32 +14,10 @@ target_compile_options(isochor_options INTERFACE
   # build, not per thread count.
   $<$<BOOL:${ISOCHOR_NATIVE}>:-march=native>)
 
-# The standard headers that most files include are parsed once a target: half of a cold build is parsing. Files
-# include what they use all the same; -DISOCHOR_PRECOMPILED_HEADERS=OFF shows which does not. Not for code that joins many
-# strings: g++ 12 forgets in a precompiled header which warnings the standard library has turned off for itself.
-function(isochor_precompile target)
-  if(NOT ISOCHOR_PRECOMPILED_HEADERS)
-    return()
-  endif()
-  target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <cstdio> <functional> <limits> <map>
-    <memory> <numeric> <optional> <span> <string> <string_view> <utility> <vector> ${ARGN})
-  isochor_cache_precompiled(${target})
-endfunction()
-
 # Code around the engine, which runs once a scene: half of its compilation was optimization that nobody would notice.
 # Not for files that use Eigen's dense algebra: their templates would take the place of the engine's when linked.
 function(isochor_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
-endfunction()
-
-# ccache needs to be told that precompiled headers are fine.
-function(isochor_cache_precompiled target)
-  get_target_property(launcher ${target} CXX_COMPILER_LAUNCHER)
-  if(launcher MATCHES "ccache$")
-    set_target_properties(${target} PROPERTIES CXX_COMPILER_LAUNCHER
-      "${CMAKE_COMMAND};-E;env;CCACHE_SLOPPINESS=pch_defines,time_macros;${launcher}")
-    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
-  endif()
 endfunction()
 
 # isochor_module(name sources...): a static library with the include layout of the tree.
@@ -52,7 +30,6 @@ function(isochor_module name)
   target_compile_features(isochor_${name} PUBLIC cxx_std_20)
   target_link_libraries(isochor_${name} PRIVATE $<BUILD_INTERFACE:isochor_options>)
   set_target_properties(isochor_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
-  isochor_precompile(isochor_${name})
   set_property(GLOBAL APPEND PROPERTY ISOCHOR_MODULES isochor_${name})
 endfunction()
 
@@ -94,8 +71,7 @@ endif()
 isochor_sources(_engine engine engine/elements)
 isochor_module(engine ${_engine})
 # Square roots set no errno, so that they are taken eight at a time.
-set_source_files_properties(${PROJECT_SOURCE_DIR}/engine/svd3.cpp PROPERTIES COMPILE_OPTIONS -fno-math-errno
-  SKIP_PRECOMPILE_HEADERS ON)
+set_source_files_properties(${PROJECT_SOURCE_DIR}/engine/svd3.cpp PROPERTIES COMPILE_OPTIONS -fno-math-errno)
 target_link_libraries(isochor_engine PUBLIC isochor_mesh isochor_solvers PRIVATE Eigen3::Eigen TBB::tbb)
 
 isochor_sources(_materials materials)
