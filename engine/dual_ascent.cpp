@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace isochor {
 
@@ -64,7 +65,11 @@ bool DualAscent::minimize(const SaddleProblem& p, const SaddleOptions& options, 
     double start = 0, slope = 0, longest = 0, enough = 0, excess = 0;
   } venture;
   double before = 0;
+  bool whole = true;  // the last step
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    if (report.factorizations >= options.max_factorizations ||
+        (!whole && iteration >= options.patient_iterations))
+      break;
     {
       const Stopwatch watch(seconds_.evaluate);
       evaluate(p, Want::hessian, x, lambda);
@@ -173,6 +178,7 @@ bool DualAscent::minimize(const SaddleProblem& p, const SaddleOptions& options, 
     }
     std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
     report.step = tau * longest;
+    whole = tau == 1;
     for (const Vec3& xi : x) {
       if (!finite(xi) || norm(xi - s.parts().rest[0]) > 1e4 * s.length()) {
         report.status = SaddleStatus::diverged;
@@ -260,9 +266,10 @@ SaddleReport DualAscent::solve(const SaddleProblem& p, const SaddleOptions& opti
     const auto w = kkt_.dual_weights(values);
     std::copy(w.begin(), w.end(), weights_.begin());
   }
-  // The multipliers' steps converge linearly: many cheap ones.
+  // The multipliers' steps converge linearly: many cheap ones, unless at their rate they cannot arrive.
   const int most = 20 * options.max_iterations;
-  double tolerance = 1e-2;
+  constexpr int window = 40;
+  double tolerance = 1e-2, farther = std::numeric_limits<double>::infinity();
   for (int k = 0;; ++k) {
     assembly_.renew_lag(x, lambda, p.prescribed);
     assembly_.evaluate(Want::gradient, Definiteness::exact, x, lambda, p.prescribed);
@@ -275,8 +282,16 @@ SaddleReport DualAscent::solve(const SaddleProblem& p, const SaddleOptions& opti
     tolerance = std::min(1e-2, 0.1 * report.force_residual);
     if (k > 0 && progress) progress(k, report.force_residual, report.row_residual);
     if (done) return report;
-    if (k >= most) {
+    const double left = std::max(report.force_residual / options.force_tolerance,
+                                 report.row_residual / options.row_tolerance);
+    bool too_slow = false;
+    if (k > 0 && k % window == 0) {
+      too_slow = left >= farther || std::log(left) / std::log(farther / left) * window > most - k;
+      farther = left;
+    }
+    if (k >= most || too_slow) {
       report.status = SaddleStatus::iteration_limit;
+      if (too_slow) report.message = "the multipliers converge too slowly";
       return report;
     }
     if (!minimize(p, options, std::max(0.1 * options.force_tolerance, tolerance), x, lambda, report))

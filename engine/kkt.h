@@ -12,6 +12,7 @@ namespace isochor {
 struct StageSeconds {
   double analyze = 0, evaluate = 0, gather = 0, factor = 0, solve = 0, line_search = 0;
   StageSeconds& operator+=(const StageSeconds& o);
+  StageSeconds& operator-=(const StageSeconds& o);
 };
 
 class Stopwatch {

@@ -65,6 +65,7 @@ void SaddleReport::add_work(const SaddleReport& earlier) {
   projected += earlier.projected;
   shifted += earlier.shifted;
   dual_steps += earlier.dual_steps;
+  stood_in += earlier.stood_in;
   dual_iterations += earlier.dual_iterations;
   linear_iterations += earlier.linear_iterations;
 }

@@ -58,6 +58,7 @@ struct SaddleReport {
   int lagged = 0;                      // iterations of a coupled system that held the lag
   int projected = 0, shifted = 0;      // iterations mended by projection and by a diagonal shift
   int dual_steps = 0;                  // of dual ascent
+  int stood_in = 0;                    // solves that ended by another method than the one asked for
   std::int64_t dual_iterations = 0;    // of conjugate gradients on multipliers
   std::int64_t linear_iterations = 0;  // of an iterative linear solver, for directions
   Index negative_pivots = -1;          // of the last factorisation; rows() when the inertia is right

@@ -296,7 +296,39 @@ SaddleReport World::Impl::solve_increment(SaddleProblem& problem, const Allowanc
     second.add_work(report);
     report = std::move(second);
   }
+  for (StandIn& other : stand_ins) {
+    if (!stuck || report.status == SaddleStatus::converged || report.status == SaddleStatus::cancelled ||
+        report.status == SaddleStatus::out_of_memory)
+      break;
+    if (!other.solver) other.solver = make_stand_in(other.method);
+    if (!other.solver) continue;
+    std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
+    std::copy(state.x.begin(), state.x.end(), x_trial.begin());
+    SaddleReport third = solve_by(*other.solver, problem, saddle);
+    if (third.status == SaddleStatus::converged && count_passing(problem.increment, false) > 0) {
+      third.status = SaddleStatus::passed_through;
+    }
+    third.add_work(report);
+    report = std::move(third);
+  }
   return report;
+}
+
+// The method of this world ends an increment that another one solved: its assembly holds the state, and its
+// tolerances are met.
+SaddleReport World::Impl::solve_by(SaddlePoint& other, SaddleProblem& problem, const SaddleOptions& saddle) {
+  other.progress = newton->progress;
+  other.cancelled = newton->cancelled;
+  const StageSeconds before = other.seconds();
+  SaddleReport report = other.solve(problem, saddle, x_trial, lambda_trial);
+  StageSeconds spent = other.seconds();
+  spent -= before;
+  newton->add_seconds(spent);
+  if (report.status != SaddleStatus::converged) return report;
+  SaddleReport last = newton->solve(problem, saddle, x_trial, lambda_trial);
+  last.add_work(report);
+  last.stood_in = 1;
+  return last;
 }
 
 // Asks rows that look back for jumps of velocities, into the trial positions; true when there are any. The

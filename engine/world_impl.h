@@ -23,6 +23,12 @@ struct World::Impl {
   std::vector<std::vector<HeldDirection>> held_by;  // by effect
   std::shared_ptr<const System> system;
   std::unique_ptr<SaddlePoint> newton;
+  // Who solves what a dual method does not, in this order; made when first needed.
+  struct StandIn {
+    Method method;
+    std::unique_ptr<SaddlePoint> solver;
+  };
+  std::vector<StandIn> stand_ins;
   std::string method;
   State state;
   std::string compile_error;
@@ -80,6 +86,8 @@ struct World::Impl {
   SaddleOptions saddle_options(const Allowance& allowance) const;
   SaddleReport attempt(double h, const Allowance& allowance);
   SaddleReport solve_increment(SaddleProblem& problem, const Allowance& allowance, bool from_guess);
+  std::unique_ptr<SaddlePoint> make_stand_in(Method other) const;
+  SaddleReport solve_by(SaddlePoint& other, SaddleProblem& problem, const SaddleOptions& saddle);
   void accept(double h, std::span<const Vec3> prediction);
   SaddleReport rescue(double h);
   Result<void> make_method(SystemParts parts);

@@ -82,6 +82,12 @@ std::string no_coupling(const SystemParts& parts, const WorldOptions& options) {
 }  // namespace
 
 Result<void> World::Impl::make_method(SystemParts parts) {
+  // Augmented where the stiffness is not definite, and rows in the matrix where that is not enough.
+  stand_ins.clear();
+  if (treatment_of(options.method) == RowTreatment::dual || options.method == Method::augmented_ascent)
+    stand_ins.push_back({Method::augmented_gradients, nullptr});
+  if (!stand_ins.empty() || options.method == Method::augmented_gradients)
+    stand_ins.push_back({Method::saddle_point, nullptr});
   const bool ascent = options.method == Method::dual_ascent || options.method == Method::augmented_ascent;
   const bool follows = options.scheme->follows_paths();
   if (ascent && follows) {
@@ -176,6 +182,21 @@ Result<void> World::Impl::make_method(SystemParts parts) {
            count(system->condensed_rows()) + " condensed, " + count(system->bordered_rows()) + " bordered, " +
            count(system->dual_rows()) + " dual";
   return {};
+}
+
+// Rows and multipliers are those of this world, only their treatment differs. Null: this build or the chosen
+// solver cannot.
+std::unique_ptr<SaddlePoint> World::Impl::make_stand_in(Method other) const {
+  SystemParts parts = system->parts();
+  parts.treatment = treatment_of(other);
+  parts.border_wide_rows = true;
+  auto compiled_system = System::compile(std::move(parts));
+  if (!compiled_system) return nullptr;
+  const auto kind = static_cast<SolverKind>(options.solver);
+  if (kind == SolverKind::cholmod_supernodal && !compiled_system.value()->kept_rows().empty()) return nullptr;
+  auto solver = make_linear_solver(kind, SolverWishes{});
+  if (!solver) return nullptr;
+  return std::make_unique<Newton>(std::move(compiled_system).value(), *parallel, std::move(solver));
 }
 
 std::string World::method() const {

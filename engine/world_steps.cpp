@@ -20,6 +20,7 @@ void accumulate(StepReport& total, const SaddleReport& r) {
   total.projected += r.projected;
   total.shifted += r.shifted;
   total.dual_steps += r.dual_steps;
+  total.stand_ins += r.stood_in;
   total.dual_iterations += r.dual_iterations;
   total.linear_iterations += r.linear_iterations;
   total.negative_pivots = r.negative_pivots;

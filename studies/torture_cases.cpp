@@ -40,14 +40,15 @@ TortureResult cantilever(const TortureSettings& s) {
 }
 
 TortureResult bar_between_ends(const TortureSettings& s, const std::function<void(DirichletDef&)>& motion,
-                               std::array<int, 3> divisions = {8, 3, 3}, Vec3 size = {0.4, 0.1, 0.1}) {
+                               std::array<int, 3> divisions = {8, 3, 3}, Vec3 size = {0.4, 0.1, 0.1},
+                               bool equilibrium = true) {
   TortureBench bench(s);
   bench.add_body(box(s, size, divisions), neo_hookean(torture_constants(s, 66e3)));
   bench.hold({"x0"});
   DirichletDef end = moved(bench, "x1");
   motion(end);
   bench.add(dirichlet(end));
-  return bench.run(true);
+  return bench.run(equilibrium);
 }
 
 TortureResult twist(const TortureSettings& s) {
@@ -62,13 +63,15 @@ TortureResult stretch(const TortureSettings& s) {
   return bar_between_ends(s, [&](DirichletDef& end) { end.displacement = {2.4 * 0.4 * s.load, 0, 0}; });
 }
 
-// Both faces bonded, down to a fifth of the height at load 1.
+// Both faces bonded, down to a fifth of the height at load 1. The path of equilibria of the Tet10 mesh turns
+// back at 86 % of the way (docs/stability.md).
 TortureResult compression(const TortureSettings& s) {
-  return bar_between_ends(s,
-                          [&](DirichletDef& end) {
-                            end.displacement = {-0.8 * 0.1 * std::min(s.load, 1.1), 0, 0};
-                          },
-                          {4, 4, 4}, {0.1, 0.1, 0.1});
+  return bar_between_ends(
+      s,
+      [&](DirichletDef& end) {
+        end.displacement = {-0.8 * 0.1 * std::min(s.load, 1.1), 0, 0};
+      },
+      {4, 4, 4}, {0.1, 0.1, 0.1}, s.element != Element::tet10);
 }
 
 // A flat block on a table, its middle pressed down to half its height.

@@ -147,8 +147,9 @@ struct StepReport {
   int corrections = 0;  // further steps on factors at hand
   int lagged = 0;       // FrictionCoupling::coupled: iterations that fell back to lagged friction
   int factorizations = 0, trials = 0;
-  int projected = 0, shifted = 0;      // iterations whose matrix had to be mended
-  int dual_steps = 0;                  // of dual ascent
+  int projected = 0, shifted = 0;  // iterations whose matrix had to be mended
+  int dual_steps = 0;              // of dual ascent
+  int stand_ins = 0;  // increments that a dual method left to Method::augmented_gradients or saddle_point
   std::int64_t dual_iterations = 0;    // of conjugate gradients on multipliers
   std::int64_t linear_iterations = 0;  // of Solver::iterative
   int rescues = 0;                     // increments that only a damped motion brought to their equilibrium

@@ -77,6 +77,7 @@ void add_torture(const TortureCase& c, const Flavor& flavor, const Way& way, dou
                      {"cutbacks", r.cutbacks},
                      {"mended", r.shifted + r.projected},
                      {"rescues", r.rescues},
+                     {"stand-ins", r.stand_ins},
                      {"volume error", r.volume_error},
                      {"min J", r.min_J},
                      {"drift", r.drift},
@@ -284,16 +285,17 @@ void add_verdicts(std::span<const Measured> all, std::vector<Section>& out) {
       "reports that it found none. Broken would be a number that is not finite, a state called converged "
       "that "
       "is not, or a rejected step that left traces. Mended: matrices of wrong inertia; cutbacks: increments "
-      "that were halved."};
-  Table t{"",
-          {"case", "formulation", "method", "runs", "solved", "told", "stopped", "broken",
-           "Newton iterations", "cutbacks", "mended", "rescues", "largest volume error", "seconds"},
-          {}};
+      "that were halved; stand-ins: increments that a dual method left to its augmented relative."};
+  Table t{
+      "",
+      {"case", "formulation", "method", "runs", "solved", "told", "stopped", "broken", "Newton iterations",
+       "cutbacks", "mended", "stand-ins", "rescues", "largest volume error", "seconds"},
+      {}};
   for (const auto& name : label_values(torture, "case")) {
     for (const auto& formulation_name : label_values(torture, "formulation")) {
       for (const auto& way : label_values(torture, "method")) {
         int runs = 0, verdicts[3] = {0, 0, 0}, broken = 0;
-        double newton = 0, cutbacks = 0, mended = 0, rescues = 0, volume = 0, seconds = 0;
+        double newton = 0, cutbacks = 0, mended = 0, stand_ins = 0, rescues = 0, volume = 0, seconds = 0;
         for (const Measured& m : torture) {
           if (m.label("case") != name || m.label("formulation") != formulation_name ||
               m.label("method") != way)
@@ -307,6 +309,7 @@ void add_verdicts(std::span<const Measured> all, std::vector<Section>& out) {
           newton += m.number("newton");
           cutbacks += m.number("cutbacks");
           mended += m.number("mended");
+          stand_ins += m.number("stand-ins");
           rescues += m.number("rescues");
           volume = std::max(volume, m.number("volume error"));
           seconds += m.number("run seconds");
@@ -315,8 +318,8 @@ void add_verdicts(std::span<const Measured> all, std::vector<Section>& out) {
         if (broken > 0) t.failed.push_back(t.rows.size());
         t.rows.push_back({name, formulation_name, way, std::to_string(runs), std::to_string(verdicts[0]),
                           std::to_string(verdicts[1]), std::to_string(verdicts[2]), std::to_string(broken),
-                          text(newton), text(cutbacks), text(mended), text(rescues), text(volume, 2),
-                          text(seconds)});
+                          text(newton), text(cutbacks), text(mended), text(stand_ins), text(rescues),
+                          text(volume, 2), text(seconds)});
       }
     }
   }
