@@ -1,4 +1,4 @@
-// Direct solvers on the same systems.
+// Linear solvers on the same systems, and methods for the same saddle points.
 #include <algorithm>
 
 #include "studies/analysis.h"
@@ -8,8 +8,19 @@ namespace isochor::studies {
 
 namespace {
 
-constexpr std::pair<Solver, const char*> kSolvers[] = {
-    {Solver::mumps, "mumps"}, {Solver::cholmod, "cholmod"}, {Solver::eigen, "eigen"}};
+struct Way {
+  const char* name;
+  Solver solver;
+  Method method;
+};
+constexpr Way kWays[] = {{"multifrontal", Solver::multifrontal, Method::saddle_point},
+                         {"mumps", Solver::mumps, Method::saddle_point},
+                         {"cholmod", Solver::cholmod, Method::saddle_point},
+                         {"eigen", Solver::eigen, Method::saddle_point},
+                         {"iterative", Solver::iterative, Method::saddle_point},
+                         {"dual_gradients", Solver::automatic, Method::dual_gradients},
+                         {"augmented_gradients", Solver::automatic, Method::augmented_gradients},
+                         {"augmented_ascent", Solver::automatic, Method::augmented_ascent}};
 
 std::vector<Cell> cells(bool quick) {
   std::vector<Cell> out;
@@ -19,11 +30,12 @@ std::vector<Cell> cells(bool quick) {
     for (std::size_t k = 0; k < (quick ? 2u : 3u); ++k) {
       // After 20 x 2 x 2 boxes 40 x 4 x 4, of Tet10 20 x 2 x 2.
       const std::size_t level = k < 2 || f.quadratic() ? k : k + 1;
-      for (const auto& [solver, word] : kSolvers) {
+      for (const Way& way : kWays) {
         Cell c = problem_cell(p, f, level);
-        c.id += std::string("/") + word;
-        c.labels["solver"] = word;
-        c.scene.analysis.solver = solver;
+        c.id += std::string("/") + way.name;
+        c.labels["solver"] = way.name;
+        c.scene.analysis.solver = way.solver;
+        c.scene.analysis.method = way.method;
         out.push_back(std::move(c));
       }
     }
@@ -37,26 +49,32 @@ double factor_milliseconds(const Measured& m) {
 
 std::vector<Section> present(std::span<const Measured> all) {
   Section s{
-      "Factorization",
-      "Milliseconds for one factorization of the saddle-point matrix, against its unknowns. The answers must "
-      "agree whatever the solver: compare the errors in the table."};
+      "Solvers and methods",
+      "Seconds of the whole run, and milliseconds for one factorization where there are any (of the saddle "
+      "point, or of what a dual method factors), against the unknowns. The answers must agree whatever the "
+      "way: compare the errors in the table."};
   Table t{"",
           {"formulation", "mesh", "unknowns", "solver", "factor non-zeros", "one factorization [ms]",
            "one solve [ms]", "iterations", "whole run [s]", "error"},
           {}};
   for (const auto& f : label_values(all, "formulation")) {
-    Diagram d{f, "", "unknowns", "one factorization [ms]"};
-    d.log_x = d.log_y = true;
-    for (const auto& [solver, word] : kSolvers) {
-      Line line{word, {}, {}};
-      for (const Measured* m : where(where(all, "formulation", f), "solver", word)) {
+    Diagram run{f, "", "unknowns", "whole run [s]"}, one{f, "", "unknowns", "one factorization [ms]"};
+    run.log_x = run.log_y = one.log_x = one.log_y = true;
+    for (const Way& way : kWays) {
+      Line seconds{way.name, {}, {}}, factor{way.name, {}, {}};
+      for (const Measured* m : where(where(all, "formulation", f), "solver", way.name)) {
         if (!m->good()) continue;
-        line.x.push_back(m->unknowns());
-        line.y.push_back(factor_milliseconds(*m));
+        seconds.x.push_back(m->unknowns());
+        seconds.y.push_back(m->seconds);
+        if (factor_milliseconds(*m) <= 0) continue;
+        factor.x.push_back(m->unknowns());
+        factor.y.push_back(factor_milliseconds(*m));
       }
-      d.lines.push_back(std::move(line));
+      run.lines.push_back(std::move(seconds));
+      if (!factor.x.empty()) one.lines.push_back(std::move(factor));
     }
-    s.diagrams.push_back(std::move(d));
+    s.diagrams.push_back(std::move(run));
+    s.diagrams.push_back(std::move(one));
   }
   for (const Measured& m : all) {
     if (!m.good()) t.failed.push_back(t.rows.size());
@@ -73,7 +91,8 @@ std::vector<Section> present(std::span<const Measured> all) {
 
 Study solvers_study() {
   return {"solvers", "Linear solvers",
-          "How long the direct solvers take on the same systems, and that they agree.", cells, present};
+          "How long linear solvers and methods take on the same systems, and that they agree.", cells,
+          present};
 }
 
 }  // namespace isochor::studies
