@@ -149,8 +149,13 @@ SceneDef gripper(const SceneVariant& v) {
     SceneBody b;
     b.name = name;
     MeshFile mesh{"meshes/finger_small.msh", 1};
-    mesh.turn = (2 * std::atan2(sine, w) / sine) * u;
-    mesh.offset = {0.032 * std::cos(phi), 0.032 * std::sin(phi), 0};
+    // Without the last digits, which depend on how this is compiled.
+    const auto tidy = [](Vec3 x) {
+      for (int i = 0; i < 3; ++i) x[i] = std::round(1e12 * x[i]) / 1e12;
+      return x;
+    };
+    mesh.turn = tidy((2 * std::atan2(sine, w) / sine) * u);
+    mesh.offset = tidy({0.032 * std::cos(phi), 0.032 * std::sin(phi), 0});
     b.mesh = mesh;
     b.element = v.element.value_or(Element::tet4_edge_smoothed);
     b.materials = {rubber(100e3, 0.499, 1000, "body"), rubber(3e6, 0.499, 1000, "limiting_layer")};

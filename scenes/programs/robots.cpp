@@ -53,7 +53,7 @@ SceneDef finger(const SceneVariant& v) {
       on_mesh("finger", "Bending finger",
               "A row of bellows on a sole with a stiff limiting layer, clamped at one end, inflated to "
               "10 kPa: it curls.",
-              "finger", "finger", v);
+              "finger", "finger_large", v);
   // The limiting layer stands for fabric in silicone: thirty times as stiff, just as incompressible.
   s.bodies[0].materials = {rubber(100e3, 0.499, 1000, "body"), rubber(3e6, 0.499, 1000, "limiting_layer")};
   s.dirichlet = {hold("clamp", "clamped")};
