@@ -67,33 +67,39 @@ try {
   const { page } = opened;
   const error = await page.evaluate('window.isochorError ?? null');
   if (error) throw new Error(error);
-  // Each picture goes the whole way, to the window: the browser asks for the next when it has shown the last.
+  // As the page plays, without its limit of pictures a second. Each goes the whole way, to the window: the browser
+  // asks for the next when it has shown the last.
   const play = (length) => page.evaluate(`(async () => {
-    const viewer = window.isochorViewer, { stage, run, state } = viewer;
-    const gl = stage.renderer?.getContext?.();
-    const pixel = new Uint8Array(4);
+    const { stage, run, state } = window.isochorViewer;
+    state.playing = true;
+    stage.setPlaying(true);
     let pictures = 0;
+    const gl = stage.renderer.getContext();
+    const pixel = new Uint8Array(4);
     const start = performance.now();
     while (performance.now() - start < ${1000 * length}) {
       await new Promise((shown) => requestAnimationFrame(shown));
-      state.frame = pictures % run.frameCount;
-      await viewer.showFrame();
-      stage.draw();
-      gl?.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+      await window.isochorViewer.advance();
       ++pictures;
     }
-    return { seconds: (performance.now() - start) / 1000, pictures, frames: run.frameCount };
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); // waits for the last of them
+    const seconds = (performance.now() - start) / 1000;
+    state.playing = false;
+    stage.setPlaying(false);
+    return { seconds, pictures, frames: run.frameCount, quality: stage.pace.quality, canvas: [stage.canvas.width, stage.canvas.height],
+      triangles: stage.renderer.info.render.triangles, surface: run.head.triangles };
   })()`);
-  await play(1); // unpacks frames, and the renderer compiles what it needs
+  await play(3); // unpacks frames, the renderer compiles what it needs, and the page finds its pace
   const before = spent();
   const played = await play(seconds);
   const each = (spent() - before) / played.pictures;
-  const triangles = await page.evaluate('window.isochorViewer.stage.renderer?.info?.render?.triangles ?? 0');
   console.log(`size       ${(statSync(files[0]).size / 1e6).toFixed(2)} MB`);
   console.log(`empty page ${text(empty)}`);
   console.log(`opens in   ${text(opened)}`);
-  console.log(`plays      ${(played.pictures / played.seconds).toFixed(1)} pictures a second, ${played.frames} frames, `
-    + `${triangles} triangles drawn, ${width} x ${height}${Number.isNaN(each) ? '' : `, ${(1000 * each).toFixed(0)} ms of processor time each`}`);
+  const { frames, quality, canvas, triangles, surface } = played;
+  console.log(`plays      ${(played.pictures / played.seconds).toFixed(1)} pictures a second, ${frames} frames, `
+    + `${surface} triangles (${triangles} drawn), ${width} x ${height} (canvas ${canvas.join(' x ')}, quality ${quality})`
+    + `${Number.isNaN(each) ? '' : `, ${(1000 * each).toFixed(0)} ms of processor time each`}`);
 } finally {
   await browser.close();
 }

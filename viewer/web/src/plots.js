@@ -35,6 +35,7 @@ export class Plots {
     this.time = run.head.frames[0]?.time ?? null;
     this.plots = [];
     this.waiting = new Map();
+    this.readTime = -Infinity;
     this.observer = new ResizeObserver(() => this.resize());
     // A chart is drawn when it comes near the window: those below it cost nothing while the page opens.
     this.near = new IntersectionObserver((entries) => {
@@ -184,11 +185,15 @@ export class Plots {
     u.setLegend({ idx: best });
   }
 
-  setTime(time) {
+  /** While playing, the numbers in the keys change a few times a second: faster than that nobody reads. */
+  setTime(time, playing = false) {
     this.time = time;
+    const now = performance.now();
+    const read = !playing || now - this.readTime > 250;
+    if (read) this.readTime = now;
     for (const { plot } of this.plots) {
       this.placeMarker(plot);
-      this.readAt(plot);
+      if (read) this.readAt(plot);
     }
   }
 

@@ -70,6 +70,50 @@ export function buildTopology(rest, triangles, trianglePart, partCount) {
   return { group, groupCount: number.size, closed };
 }
 
+/**
+ * For each triangle whether it bounds a hollow inside a closed part: nothing of that is seen from outside while
+ * the part is whole. Such a piece of surface encloses a negative volume and lies in the box of one that encloses a
+ * positive volume.
+ */
+export function hollows(rest, triangles, trianglePart, closed) {
+  const count = trianglePart.length;
+  const parent = new Int32Array(rest.length / 3).map((_, i) => i);
+  const find = (i) => {
+    while (parent[i] !== i) { parent[i] = parent[parent[i]]; i = parent[i]; }
+    return i;
+  };
+  for (let c = 0; c < triangles.length; c += 3) {
+    parent[find(triangles[c])] = find(triangles[c + 1]);
+    parent[find(triangles[c])] = find(triangles[c + 2]);
+  }
+  const pieces = new Map();
+  const pieceOf = new Array(count);
+  for (let f = 0; f < count; ++f) {
+    const root = find(triangles[3 * f]);
+    let piece = pieces.get(root);
+    if (!piece) {
+      piece = { part: trianglePart[f], volume: 0, low: [Infinity, Infinity, Infinity], high: [-Infinity, -Infinity, -Infinity] };
+      pieces.set(root, piece);
+    }
+    pieceOf[f] = piece;
+    if (piece.part !== trianglePart[f]) piece.part = -1; // two parts share a node
+    const [a, b, c] = [0, 1, 2].map((k) => 3 * triangles[3 * f + k]);
+    const [ax, ay, az, bx, by, bz, cx, cy, cz] = [
+      rest[a], rest[a + 1], rest[a + 2], rest[b], rest[b + 1], rest[b + 2], rest[c], rest[c + 1], rest[c + 2]];
+    piece.volume += ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx);
+    for (let k = 0; k < 3; ++k) {
+      piece.low[k] = Math.min(piece.low[k], rest[a + k], rest[b + k], rest[c + k]);
+      piece.high[k] = Math.max(piece.high[k], rest[a + k], rest[b + k], rest[c + k]);
+    }
+  }
+  const all = [...pieces.values()];
+  for (const piece of all) {
+    piece.hollow = closed[piece.part] === true && piece.volume < 0 && all.some((other) => other.part === piece.part && other.volume > 0
+      && [0, 1, 2].every((k) => other.low[k] < piece.low[k] && other.high[k] > piece.high[k]));
+  }
+  return Uint8Array.from(pieceOf, (piece) => (piece.hollow ? 1 : 0));
+}
+
 /** Area-weighted unit normals, one a smooth group. */
 export function groupNormals(faces, topology, out = new Float32Array(topology.groupCount * 3)) {
   out.fill(0);
