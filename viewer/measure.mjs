@@ -1,9 +1,8 @@
 #!/usr/bin/env node
 // Measures a results page in headless Chromium with software rendering: size, time until it can be used (the first
 // page of a new browser, then the best of some more), pictures a second while every frame is shown in turn (the
-// best of three times). Beside
-// wall time stands the processor time of all of the browser, which a busy machine stretches less, and what an empty
-// page takes.
+// best of three times). Beside wall time stands the processor time of all of the browser, which a busy machine
+// stretches less, and what an empty page takes.
 //
 //   node viewer/measure.mjs PAGE.html [--size 1600x1000] [--seconds 4]
 import { existsSync, readFileSync, readdirSync, statSync } from 'node:fs';

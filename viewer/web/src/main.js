@@ -121,7 +121,7 @@ class Viewer {
       const { factor, unit } = this.timeScale;
       this.page.stamp.replaceChildren(
         el('b', {}, `${run.head.x.symbol} = ${significant(info.time * factor, 4)} ${unit}`),
-        info.label ? el('span', {}, info.label) : '');
+        el('span', {}, info.label || (run.head.x.symbol === 't' ? '' : run.head.x.label)));
       this.plots?.setTime(info.time, state.playing);
     }
     this.controls?.frameShown();
@@ -141,7 +141,8 @@ class Viewer {
     }
     if (!(range[1] > range[0])) {
       const pad = Math.abs(range[0]) * 1e-3 || 1;
-      range = [range[0] - pad, range[1] + pad];
+      // Nothing below zero where the run has nothing below zero.
+      range = [field.diverging || range[0] < 0 ? range[0] - pad : Math.max(0, range[0] - pad), range[1] + pad];
     }
     return range;
   }

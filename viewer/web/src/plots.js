@@ -25,6 +25,12 @@ function charts(series) {
   return out;
 }
 
+/** Lines of a logarithmic axis at powers of ten: those between would be a gray band. */
+const decades = (lines) => ({
+  ...lines,
+  filter: (_, splits) => splits.map((v) => (v > 0 && Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-6 ? v : null)),
+});
+
 const finiteOrNull = (v) => (Number.isFinite(v) ? v : null);
 
 export class Plots {
@@ -112,7 +118,9 @@ export class Plots {
     const format = (_, values) => values.map((v) => (v === null ? '' : significant(v, 5)));
     const { x } = this.run.head;
     const used = chart.units.filter((unit) => scaleOf.get(unit).values.length > 0);
-    const scales = { x: { time: false } };
+    // A single point stands in the middle of a short axis.
+    const single = data[0].length === 1 ? [data[0][0] - 0.5, data[0][0] + 0.5] : null;
+    const scales = { x: { time: false, range: (_, low, high) => single ?? [low, high] } };
     for (const unit of used) {
       scales[scaleOf.get(unit).key] = log ? { distr: 3 } : {
         range: (_, low, high) => {
@@ -135,9 +143,9 @@ export class Plots {
           const names = chart.series.filter((m) => m.unit === unit);
           const label = names.length === 1 ? names[0].name : '';
           return {
-            ...axis, scale: s.key, side: i === 0 ? 3 : 1, size: width, values: format, labelSize: 18,
+            ...axis, scale: s.key, ...(log ? { ticks: decades(axis.ticks), grid: decades(axis.grid) } : {}), side: i === 0 ? 3 : 1, size: width, values: format, labelSize: 18,
             label: [label, s.unit ? `[${s.unit}]` : ''].filter(Boolean).join(' ') || undefined,
-            grid: i === 0 ? axis.grid : { show: false },
+            ...(i === 0 ? {} : { grid: { show: false } }),
           };
         }),
       ],
