@@ -171,6 +171,26 @@ const tests = {
     await finish(page);
   },
 
+  async 'dragging turns the body'() {
+    const page = await open('full', 'frame=10');
+    const before = await pixels(page);
+    const direction = '(({ stage: { camera, controls } }) => camera.position.clone().sub(controls.target).normalize().toArray())(isochorViewer)';
+    const from = await page.evaluate(direction);
+    const { x, y } = await page.evaluate(`(({ x, y, width, height }) => ({ x: x + width / 2, y: y + height / 2 }))(isochorViewer.stage.canvas.getBoundingClientRect())`);
+    const mouse = (type, dx) => page.send('Input.dispatchMouseEvent', { type, x: x + dx, y, button: 'left', buttons: type === 'mouseReleased' ? 0 : 1, clickCount: 1 });
+    await mouse('mousePressed', 0);
+    for (const dx of [20, 40, 60, 80]) await mouse('mouseMoved', dx);
+    await mouse('mouseReleased', 80);
+    const to = await page.evaluate(direction);
+    assert.ok(Math.hypot(...to.map((v, i) => v - from[i])) > 0.2, 'the camera has moved');
+    await page.waitFor('isochorViewer.stage.drawn === 0 && !isochorViewer.stage.pending');
+    assert.notEqual((await pixels(page)).hash, before.hash);
+    assert.equal(await page.evaluate('isochorViewer.stage.canvas.width'), await page.evaluate('isochorViewer.stage.host.clientWidth'));
+    await page.key('r');
+    assert.equal((await pixels(page)).hash, before.hash, 'R brings the camera back');
+    await finish(page);
+  },
+
   async 'the cut shows the inside'() {
     // The inner wall carries the largest stress: its yellow is hidden until the body is cut.
     const page = await open('full', 'field=stress&frame=10');

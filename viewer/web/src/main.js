@@ -258,6 +258,7 @@ async function open() {
     console.error(error);
   }
   window.isochorReady = true;
+  window.isochorOpened = performance.now(); // ms since the browser set out for this page: the first picture is shown
   window.isochorViewer?.run.unpackAhead();
 }
 

@@ -115,6 +115,7 @@ export class Stage {
     const gl = this.renderer.getContext();
     const { pace } = this;
     this.measured = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    if (!this.measured) return; // the context is lost
     gl.flush();
     const look = (now) => {
       const done = gl.getSyncParameter(this.measured, gl.SYNC_STATUS) === gl.SIGNALED;
