@@ -4,7 +4,9 @@
 // every frame is shown in turn. Each is the best of three. Beside wall time stands the processor time of all of the
 // browser, which a busy machine stretches less, and what an empty page takes.
 //
-//   node viewer/measure.mjs PAGE.html [--size 1600x1000] [--seconds 4]
+// --quality holds how finely moving pictures are drawn: 0 is the best, 3 the quickest (web/src/pace.js).
+//
+//   node viewer/measure.mjs PAGE.html [--size 1600x1000] [--seconds 4] [--quality N]
 import { existsSync, readFileSync, readdirSync, statSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -15,19 +17,21 @@ function fail(message, code) {
   process.exit(code);
 }
 
-const USAGE = 'usage: measure.mjs PAGE.html [--size WxH] [--seconds N]';
+const USAGE = 'usage: measure.mjs PAGE.html [--size WxH] [--seconds N] [--quality N]';
 const files = [];
 let [width, height] = [1600, 1000];
 let seconds = 4;
+let quality = null;
 const args = process.argv.slice(2);
 while (args.length > 0) {
   const arg = args.shift();
   if (arg === '--size') [width, height] = (args.shift() ?? '').split('x').map(Number);
   else if (arg === '--seconds') seconds = Number(args.shift());
+  else if (arg === '--quality') quality = Number(args.shift());
   else if (arg.startsWith('--')) fail(`unknown option ${arg}; ${USAGE}`, 2);
   else files.push(arg);
 }
-if (files.length !== 1 || !existsSync(files[0]) || !(width > 0 && height > 0 && seconds > 0)) fail(USAGE, 2);
+if (files.length !== 1 || !existsSync(files[0]) || !(width > 0 && height > 0 && seconds > 0 && [null, 0, 1, 2, 3].includes(quality))) fail(USAGE, 2);
 if (!findChromium()) fail(MISSING, 3);
 
 /** Processor time [s] of the browser and its helpers so far; NaN where there is no /proc. */
@@ -114,6 +118,7 @@ try {
     return { seconds, pictures, frames: run.frameCount, quality: stage.pace.quality, canvas: [stage.canvas.width, stage.canvas.height],
       triangles: stage.renderer.info.render.triangles, surface: run.head.triangles };
   })()`);
+  if (quality !== null) await page.evaluate(`{ const { pace } = isochorViewer.stage; pace.quality = ${quality}; pace.took = () => {}; }`);
   await play(3); // unpacks frames, the renderer compiles what it needs, and the page finds its pace
   let played = null, each = Infinity;
   for (let i = 0; i < 3; ++i) {
@@ -125,9 +130,9 @@ try {
   console.log(`size       ${(statSync(files[0]).size / 1e6).toFixed(2)} MB`);
   console.log(`opens in   ${text(first[1])} in a new browser, an empty page ${text(first[0])}`);
   console.log(`           ${text(again[1])} in a warm one, an empty page ${text(again[0])}`);
-  const { frames, quality, canvas, triangles, surface } = played;
+  const { frames, canvas, triangles, surface } = played;
   console.log(`plays      ${(played.pictures / played.seconds).toFixed(1)} pictures a second, ${frames} frames, `
-    + `${surface} triangles (${triangles} drawn), ${width} x ${height} (canvas ${canvas.join(' x ')}, quality ${quality})`
+    + `${surface} triangles (${triangles} drawn), ${width} x ${height} (canvas ${canvas.join(' x ')}, quality ${played.quality})`
     + `${Number.isNaN(each) ? '' : `, ${(1000 * each).toFixed(0)} ms of processor time each`}`);
 } finally {
   await browser.close();
