@@ -123,7 +123,8 @@ PageReport report(const RunView& view) {
                                std::to_string(r.size.multipliers) + " multipliers"},
               {"Steps", std::to_string(r.records.back().step) + " of " + std::to_string(r.steps_asked)},
               {"Newton iterations", std::to_string(r.newton_iterations)},
-              {"Wall time", number(r.wall_s, "%.2f") + " s, " + std::to_string(r.threads) + " threads"}};
+              {"Wall time", number(r.wall_s, "%.2f") + " s, " + std::to_string(r.threads) +
+                                (r.threads == 1 ? " thread" : " threads")}};
   const StepRecord& end = r.records.back();
   page.summary = {{"Status", to_string(r.status)},
                   {"Volume error", number(end.volume_error, "%.1e")},
@@ -134,7 +135,10 @@ PageReport report(const RunView& view) {
     page.summary.push_back({m.def.name, text});
   }
   for (const auto& w : r.warnings) page.notes.push_back(w);
-  if (r.status != RunStatus::converged) page.notes.push_back(r.reason);
+  if (r.status != RunStatus::converged) {
+    page.notes.push_back("Shown up to step " + std::to_string(r.records.back().step) + " of " +
+                         std::to_string(r.steps_asked) + ": " + r.reason);
+  }
   if (scene.analysis.type == AnalysisType::statics) {
     page.x_label = "Load factor";
     page.x_symbol = "\u03bb";

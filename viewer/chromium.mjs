@@ -23,12 +23,13 @@ export function findChromium() {
 
 export const MISSING = `No Chromium found: none of ${NAMES.join(', ')} is on PATH.`;
 
-// Software rendering gives the same picture on every machine; nothing may reach the network.
+// Software rendering gives the same picture on every machine: WebGL by SwiftShader, the rest by the processor, as a
+// browser does without a graphics card. Nothing may reach the network.
 const FLAGS = [
-  '--headless=new', '--no-sandbox', '--remote-debugging-pipe', '--use-gl=angle', '--use-angle=swiftshader',
-  '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-quic', '--no-first-run', '--no-default-browser-check',
-  '--disable-background-networking', '--disable-component-update', '--disable-sync', '--disable-extensions',
-  '--disable-default-apps', '--disable-dev-shm-usage', '--hide-scrollbars', '--mute-audio',
+  '--headless=new', '--no-sandbox', '--remote-debugging-pipe', '--disable-gpu', '--enable-unsafe-swiftshader',
+  '--disable-quic', '--no-first-run', '--no-default-browser-check', '--disable-background-networking',
+  '--disable-component-update', '--disable-sync', '--disable-extensions', '--disable-default-apps',
+  '--disable-dev-shm-usage', '--hide-scrollbars', '--mute-audio',
   '--proxy-server=127.0.0.1:9', '--force-color-profile=srgb',
 ];
 

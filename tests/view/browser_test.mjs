@@ -105,6 +105,92 @@ const tests = {
     await finish(page);
   },
 
+  async 'what moves may be drawn in haste, what rests is drawn at its best'() {
+    const page = await open('full', 'field=stress&frame=first');
+    const size = () => page.evaluate('[isochorViewer.stage.canvas.width, isochorViewer.stage.canvas.height]');
+    const best = await size();
+    assert.equal(best[0], await page.evaluate(`document.querySelector('.stage').clientWidth`));
+    // The pace is held, so that nothing here depends on how fast this machine is.
+    await page.evaluate('isochorViewer.stage.pace.took = () => {}; isochorViewer.stage.pace.quality = 3; 0');
+    await page.evaluate('isochorViewer.play(true)');
+    await page.waitFor('isochorViewer.stage.drawn === 3 && isochorViewer.state.frame > 3');
+    const quick = await page.evaluate('(() => { const { stage } = isochorViewer; stage.drawMoving(); stage.playing = true; return [stage.canvas.width, stage.canvas.height]; })()');
+    assert.deepEqual(quick, best.map((n) => Math.floor(n / 2)), 'half the resolution while it plays');
+    await page.evaluate('isochorViewer.play(false); isochorViewer.go(10)');
+    await page.waitFor('isochorViewer.stage.drawn === 0 && isochorViewer.frame.index === 10');
+    assert.deepEqual(await size(), best, 'all of it again at rest');
+    const rested = await pixels(page);
+    await finish(page);
+    const fresh = await open('full', 'field=stress&frame=10');
+    assert.equal((await pixels(fresh)).hash, rested.hash, 'a picture at rest does not depend on what came before');
+    await finish(fresh);
+  },
+
+  async 'every quality shows the body'() {
+    const page = await open('full', 'field=stress&frame=10');
+    const best = await pixels(page);
+    for (const quality of [1, 2, 3]) {
+      const drawn = await page.evaluate(PIXELS.replace('stage.draw();', `stage.drawAt(${quality});`));
+      const [share, wanted] = [drawn, best].map((d) => d.covered / d.total);
+      assert.ok(Math.abs(share - wanted) < 0.1 * wanted, `quality ${quality} covers ${share} of the picture, the best ${wanted}`);
+      assert.ok(drawn.colors > 100, `quality ${quality}: ${drawn.colors} colors`);
+    }
+    await finish(page);
+  },
+
+  async 'the pace gives way when pictures are slow and not for one of them'() {
+    const page = await open('single');
+    const qualities = await page.evaluate(`(() => {
+      const Pace = isochorViewer.stage.pace.constructor;
+      const after = (list) => { const pace = new Pace(); for (const ms of list) pace.took(ms); return pace.quality; };
+      const times = (n, ms) => Array(n).fill(ms);
+      return [after(times(30, 25)), after([10, 500, 10, 10, 500, 10]), after(times(3, 60)), after(times(100, 60)), after([...times(3, 60), ...times(40, 10)])];
+    })()`);
+    assert.deepEqual(qualities, [0, 0, 1, 3, 0]);
+    await finish(page);
+  },
+
+  async 'hollows are drawn once they can be seen'() {
+    const page = await open('full', 'frame=10');
+    const drawn = '(() => { isochorViewer.stage.draw(); return isochorViewer.stage.body.view.meshes.reduce((n, { mesh }) => n + Math.min(mesh.geometry.drawRange.count, mesh.geometry.index.count), 0); })()';
+    const all = await page.evaluate('3 * isochorViewer.run.head.triangles');
+    assert.equal(await page.evaluate(drawn), all / 2, 'the inner wall is hidden');
+    await page.key('y');
+    assert.equal(await page.evaluate(drawn), all, 'through the cut it is seen');
+    await page.key('y');
+    assert.equal(await page.evaluate(drawn), all / 2);
+    await page.evaluate('isochorViewer.stage.dolly(0.05)');
+    assert.equal(await page.evaluate(drawn), all, 'and from inside');
+    await finish(page);
+  },
+
+  async 'frames are unpacked ahead'() {
+    const page = await open('full');
+    await page.waitFor('isochorViewer.run.frames.every((frame) => frame !== null)');
+    assert.equal(await page.evaluate(`document.querySelectorAll('script.isochor-block').length`), 0);
+    await finish(page);
+  },
+
+  async 'dragging turns the body'() {
+    const page = await open('full', 'frame=10');
+    const before = await pixels(page);
+    const direction = '(({ stage: { camera, controls } }) => camera.position.clone().sub(controls.target).normalize().toArray())(isochorViewer)';
+    const from = await page.evaluate(direction);
+    const { x, y } = await page.evaluate(`(({ x, y, width, height }) => ({ x: x + width / 2, y: y + height / 2 }))(isochorViewer.stage.canvas.getBoundingClientRect())`);
+    const mouse = (type, dx) => page.send('Input.dispatchMouseEvent', { type, x: x + dx, y, button: 'left', buttons: type === 'mouseReleased' ? 0 : 1, clickCount: 1 });
+    await mouse('mousePressed', 0);
+    for (const dx of [20, 40, 60, 80]) await mouse('mouseMoved', dx);
+    await mouse('mouseReleased', 80);
+    const to = await page.evaluate(direction);
+    assert.ok(Math.hypot(...to.map((v, i) => v - from[i])) > 0.2, 'the camera has moved');
+    await page.waitFor('isochorViewer.stage.drawn === 0 && !isochorViewer.stage.pending');
+    assert.notEqual((await pixels(page)).hash, before.hash);
+    assert.equal(await page.evaluate('isochorViewer.stage.canvas.width'), await page.evaluate('isochorViewer.stage.host.clientWidth'));
+    await page.key('r');
+    assert.equal((await pixels(page)).hash, before.hash, 'R brings the camera back');
+    await finish(page);
+  },
+
   async 'the cut shows the inside'() {
     // The inner wall carries the largest stress: its yellow is hidden until the body is cut.
     const page = await open('full', 'field=stress&frame=10');
@@ -179,6 +265,14 @@ const tests = {
     const bare = await open('bare', 'field=nonsense');
     assert.match(await bare.evaluate(`document.querySelector('.notes').textContent`), /no field "nonsense"/);
     await finish(bare);
+  },
+
+  async 'nothing at all is the lowest color'() {
+    const page = await open('full', 'field=displacement&frame=first&range=frame');
+    const range = await page.evaluate('isochorViewer.currentRange()');
+    assert.equal(range[0], 0);
+    assert.ok(range[1] > 0);
+    await finish(page);
   },
 
   async 'a picture is not blank'() {

@@ -1,12 +1,14 @@
 // Writes a sample results page: a thick capsule that widens at constant wall area and bends.
 // Motion, fields and curves are formulas; nothing here is a result of the engine. The browser test looks at
-// it.
+// it. ACROSS and ALONG are cells over an end and along the straight part (10 and 16): the surface has
+// 8 ACROSS (3 ACROSS + 2 ALONG) triangles, the body 4.5 times as many tets.
 //
-//   make_demo_page OUT.html [broken|single|bare]
+//   make_demo_page OUT.html [full|broken|single|bare [ACROSS ALONG FRAMES]]
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -26,7 +28,6 @@ using isochor::Vec3;
 constexpr double inner = 0.010, outer = 0.016;  // radii of the wall [m]
 constexpr double straight = 0.075;              // length of the straight part [m]
 constexpr int layers = 3;                       // cells through the wall
-constexpr int across = 10, along = 16;          // cells over an end, and along the straight part
 
 double norm(const Vec3& v) {
   return std::sqrt(dot(v, v));
@@ -39,8 +40,9 @@ struct CapsulePoint {
   double share;
 };
 
-void capsule_surface(std::vector<CapsulePoint>& points, std::vector<Index>& triangles) {
-  constexpr std::array<int, 3> cells = {across, across, across + along};
+void capsule_surface(int across, int along, std::vector<CapsulePoint>& points,
+                     std::vector<Index>& triangles) {
+  const std::array<int, 3> cells = {across, across, across + along};
   const auto point = [&](const std::array<int, 3>& at) {
     const int raised = std::clamp(at[2] - across / 2, 0, along);
     Vec3 p;
@@ -78,10 +80,10 @@ void capsule_surface(std::vector<CapsulePoint>& points, std::vector<Index>& tria
 }
 
 // Prisms between two copies of the sphere, cut by the order of their vertex numbers so that neighbors agree.
-Mesh capsule() {
+Mesh capsule(int across, int along) {
   std::vector<CapsulePoint> surface;
   std::vector<Index> triangles;
-  capsule_surface(surface, triangles);
+  capsule_surface(across, along, surface, triangles);
   const auto count = static_cast<Index>(surface.size());
   Mesh mesh;
   for (int layer = 0; layer <= layers; ++layer) {
@@ -184,15 +186,21 @@ isochor::PageReport report(int frames) {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fprintf(stderr, "usage: make_demo_page OUT.html [broken|single|bare]\n");
+    std::fprintf(stderr, "usage: make_demo_page OUT.html [full|broken|single|bare [ACROSS ALONG FRAMES]]\n");
     return 2;
   }
-  const std::string_view variant = argc > 2 ? argv[2] : "";
-  const int frames = variant == "single" ? 1 : 21;
+  const std::string_view variant = argc > 2 ? argv[2] : "full";
+  const auto count = [&](int k, int otherwise) { return argc > k ? std::atoi(argv[k]) : otherwise; };
+  const int across = count(3, 10), along = count(4, 16);
+  const int frames = count(5, variant == "single" ? 1 : 21);
+  if (across < 2 || across % 2 != 0 || along < 1 || frames < 1) {
+    std::fprintf(stderr, "make_demo_page: ACROSS is even and at least 2, ALONG and FRAMES are at least 1\n");
+    return 2;
+  }
   const bool bare = variant == "bare", broken = variant == "broken";
 
   isochor::PageScene scene;
-  const Mesh mesh = capsule();
+  const Mesh mesh = capsule(across, along);
   const std::vector<Index> nodes = add_page_mesh(scene, mesh, {"Finger", ""}, {.cells = !bare});
   if (!bare) {
     scene.fields = {{"pressure", "Pressure", "Pa", false, true},

@@ -7,7 +7,7 @@ import { categoryColor, colorTable, partColor } from './colors.js';
 import {
   bodyFragment, bodyVertex, capFragment, ghostFragment, ghostVertex, plainVertex, stencilFragment,
 } from './shaders.js';
-import { buildTopology, faceNormals, groupNormals, sliceCells, sliceSurface } from './topology.js';
+import { buildTopology, faceNormals, groupNormals, hollows, sliceCells, sliceSurface } from './topology.js';
 
 const GRAY = [143, 143, 143];
 
@@ -86,6 +86,7 @@ export class Body {
     this.parts = run.head.parts;
     this.colors = this.parts.map(partColor);
     this.topology = buildTopology(rest, triangles, trianglePart, this.parts.length);
+    this.hollow = hollows(rest, triangles, trianglePart, this.topology.closed);
     this.faces = new Float32Array(triangles.length);
     this.normals = new Float32Array(this.topology.groupCount * 3);
     this.uniforms = {
@@ -114,12 +115,14 @@ export class Body {
     return mesh;
   }
 
-  /** Corners of the triangles that `wanted` takes. */
+  /** Corners of the triangles of the parts that `wanted` takes; those of hollows come last. */
   cornersWhere(wanted) {
-    const out = [];
     const { trianglePart } = this.run;
-    for (let f = 0; f < trianglePart.length; ++f) if (wanted(trianglePart[f])) out.push(3 * f, 3 * f + 1, 3 * f + 2);
-    return out;
+    const seen = [], hidden = [];
+    for (let f = 0; f < trianglePart.length; ++f) {
+      if (wanted(trianglePart[f])) (this.hollow[f] ? hidden : seen).push(3 * f, 3 * f + 1, 3 * f + 2);
+    }
+    return { corners: [...seen, ...hidden], seen: seen.length };
   }
 
   /** A mesh for each kind of part, drawn from `points`; `vertex`: of a corner of a triangle. */
@@ -128,7 +131,7 @@ export class Body {
     const meshes = [];
     for (const obstacle of [false, true]) {
       for (const isClosed of [true, false]) {
-        const corners = this.cornersWhere((p) => (this.parts[p].obstacle === true) === obstacle && closed[p] === isClosed);
+        const { corners, seen } = this.cornersWhere((p) => (this.parts[p].obstacle === true) === obstacle && closed[p] === isClosed);
         if (corners.length === 0) continue;
         const geometry = new THREE.BufferGeometry();
         for (const [name, a] of Object.entries({ ...points.attributes, ...extra })) geometry.setAttribute(name, a);
@@ -136,7 +139,7 @@ export class Body {
         const material = new THREE.ShaderMaterial({
           uniforms: this.uniforms, vertexShader: bodyVertex, fragmentShader: bodyFragment, side: THREE.DoubleSide,
         });
-        meshes.push({ mesh: this.add(new THREE.Mesh(geometry, material), 1), obstacle, closed: isClosed });
+        meshes.push({ mesh: this.add(new THREE.Mesh(geometry, material), 1), obstacle, closed: isClosed, seen });
       }
     }
     return { points, meshes };
@@ -199,7 +202,7 @@ export class Body {
       if (!closed[index]) return;
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute('position', this.shared.points.attributes.position);
-      geometry.setIndex(this.cornersWhere((p) => p === index).map((c) => group[c]));
+      geometry.setIndex(this.cornersWhere((p) => p === index).corners.map((c) => group[c]));
       const order = 2 + index * 3;
       this.add(new THREE.Mesh(geometry, back), order, this.section);
       this.add(new THREE.Mesh(geometry, front), order + 0.5, this.section);
@@ -235,7 +238,8 @@ export class Body {
     points.setShape(rest, groupNormals(faceNormals(rest, triangles), this.topology));
     const geometry = new THREE.BufferGeometry();
     for (const name of ['position', 'normal']) geometry.setAttribute(name, points.attributes[name]);
-    geometry.setIndex(Array.from(this.topology.group));
+    const { corners, seen } = this.cornersWhere(() => true);
+    geometry.setIndex(corners.slice(0, seen).map((c) => this.topology.group[c]));
     const base = { uniforms: { color: { value: this.ghostColor } }, vertexShader: ghostVertex, transparent: true };
     // Depth first, color second: only the nearest layer of the veil is seen.
     const depth = new THREE.ShaderMaterial({ ...base, fragmentShader: ghostFragment, colorWrite: false });
@@ -316,10 +320,12 @@ export class Body {
 
   refreshMaterials() {
     const { shows } = this;
-    for (const { mesh, obstacle, closed } of this.view.meshes) {
+    for (const { mesh, obstacle, closed, seen } of this.view.meshes) {
       const field = shows.field && !obstacle;
-      // Of a closed surface the back is seen only through a cut or from within.
-      const side = closed && !shows.cut && !shows.inside ? THREE.FrontSide : THREE.DoubleSide;
+      // Backs and hollows of a closed surface are seen only through a cut or from within.
+      const whole = closed && !shows.cut && !shows.inside;
+      const side = whole ? THREE.FrontSide : THREE.DoubleSide;
+      mesh.geometry.setDrawRange(0, whole ? seen : Infinity);
       define(mesh.material, { FIELD: field, INVALID: field && shows.invalid, CUT: shows.cut, EDGES: shows.edges }, side);
     }
     if (this.slice) define(this.sliceMaterial, { FIELD: true, INVALID: true }, THREE.DoubleSide);

@@ -40,7 +40,7 @@ export class Controls {
     this.slider.value = state.frame;
     this.counter.textContent = `${state.frame + 1} / ${run.frameCount}`;
     this.slider.setAttribute('aria-valuetext', `frame ${state.frame + 1} of ${run.frameCount}, ${this.viewer.page.stamp.textContent}`);
-    if (state.rangeMode !== 'custom') this.showRange();
+    if (state.rangeMode === 'frame') this.showRange();
   }
 
   buildPanel() {

@@ -3,6 +3,7 @@
 
 const INVALID_CODE = 65535; // a value that was NaN or infinite
 const FIELD_LEVELS = 4095;
+const AHEAD_BYTES = 100e6; // of frames unpacked before they are asked for
 
 /** Base64 of a zlib stream to its bytes. */
 async function inflate(base64) {
@@ -70,6 +71,7 @@ export class RunData {
     this.head = head;
     this.blocks = blocks;
     this.frames = new Array(head.frames.length).fill(null);
+    this.ranges = new Map();
     const { low, high } = head.box;
     this.center = low.map((v, i) => 0.5 * (v + high[i]));
     const diagonal = Math.hypot(...low.map((v, i) => high[i] - v));
@@ -132,6 +134,19 @@ export class RunData {
   frame(index) {
     this.frames[index] ??= this.readFrame(index);
     return this.frames[index];
+  }
+
+  /** Unpacks the rest while nothing else is to do, up to the memory a page may well take. */
+  unpackAhead() {
+    const { head } = this;
+    const bytes = 2 * head.fields.reduce((sum, f) => sum + (f.place === 'triangle' ? head.triangles : head.vertices), 3 * head.vertices);
+    const most = Math.min(this.frameCount, Math.floor(AHEAD_BYTES / Math.max(1, bytes)));
+    const idle = window.requestIdleCallback ?? ((work) => setTimeout(work, 30));
+    const next = (index) => {
+      while (index < most && this.frames[index]) ++index;
+      if (index < most) idle(() => this.frame(index).then(() => next(index + 1), () => {})); // who asks for it hears of it
+    };
+    next(0);
   }
 
   async readFrame(index) {
@@ -198,11 +213,13 @@ export class RunData {
 
   /** The same over the whole run. */
   runRange(field) {
+    if (this.ranges.has(field.name)) return this.ranges.get(field.name);
     let out = null;
     for (let i = 0; i < this.frameCount; ++i) {
       const range = this.frameRange(field, i);
       if (range) out = out ? [Math.min(out[0], range[0]), Math.max(out[1], range[1])] : range;
     }
+    this.ranges.set(field.name, out);
     return out;
   }
 }

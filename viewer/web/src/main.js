@@ -117,11 +117,12 @@ class Viewer {
     this.showField();
     const info = frame?.info;
     if (info) {
-      const scale = unitScale(Math.max(...run.head.frames.map((f) => Math.abs(f.time))), run.head.x.unit);
+      this.timeScale ??= unitScale(run.head.frames.reduce((m, f) => Math.max(m, Math.abs(f.time)), 0), run.head.x.unit);
+      const { factor, unit } = this.timeScale;
       this.page.stamp.replaceChildren(
-        el('b', {}, `${run.head.x.symbol} = ${significant(info.time * scale.factor, 4)} ${scale.unit}`),
-        info.label ? el('span', {}, info.label) : '');
-      this.plots?.setTime(info.time);
+        el('b', {}, `${run.head.x.symbol} = ${significant(info.time * factor, 4)} ${unit}`),
+        el('span', {}, info.label || (run.head.x.symbol === 't' ? '' : run.head.x.label)));
+      this.plots?.setTime(info.time, state.playing);
     }
     this.controls?.frameShown();
   }
@@ -140,7 +141,8 @@ class Viewer {
     }
     if (!(range[1] > range[0])) {
       const pad = Math.abs(range[0]) * 1e-3 || 1;
-      range = [range[0] - pad, range[1] + pad];
+      // Nothing below zero where the run has nothing below zero.
+      range = [field.diverging || range[0] < 0 ? range[0] - pad : Math.max(0, range[0] - pad), range[1] + pad];
     }
     return range;
   }
@@ -155,10 +157,14 @@ class Viewer {
       if (range) this.stage.body.setRange(...range);
     }
     if (this.options.legend) {
-      drawLegend(this.page.legend, {
+      const legend = {
         field, range, parts: run.head.parts, perFrame: state.rangeMode === 'frame',
         invalid: field.kind === 'given' && frame ? frame.info.ranges[field.index][2] : 0,
-      });
+      };
+      // Made anew only when it says something else: the browser paints it over the picture.
+      const says = JSON.stringify([field.name, range, legend.perFrame, legend.invalid]);
+      if (this.legendSays !== says) drawLegend(this.page.legend, legend);
+      this.legendSays = says;
     }
     this.showDisplay();
   }
@@ -205,9 +211,14 @@ class Viewer {
 
   play(on) {
     const { state, run } = this;
+    const was = state.playing;
     state.playing = on && run.frameCount > 1;
+    this.stage?.setPlaying(state.playing);
     this.controls?.playingChanged();
-    if (!state.playing) return;
+    if (!state.playing) {
+      if (was && this.frame) this.plots?.setTime(this.frame.info.time); // the key of the charts kept a slower pace
+      return;
+    }
     if (state.frame === run.frameCount - 1) this.go(0);
     // Short runs are stretched to about four seconds, long ones run at thirty frames a second.
     const rate = Math.min(30, Math.max(5, run.frameCount / 4)) * state.speed;
@@ -216,12 +227,20 @@ class Viewer {
       if (!state.playing || this.playToken !== token) return;
       if (now - last >= 1000 / rate - 2) {
         last = now;
-        await this.go((state.frame + 1) % run.frameCount);
+        await this.advance();
       }
       requestAnimationFrame(step);
     };
     const token = (this.playToken = {});
     requestAnimationFrame(step);
+  }
+
+  /** The next frame, drawn; those after it are unpacked meanwhile. */
+  async advance() {
+    const { run, state, stage } = this;
+    await this.go((state.frame + 1) % run.frameCount);
+    if (stage?.pending) stage.drawChange();
+    for (let k = 1; k <= 3; ++k) run.frame((state.frame + k) % run.frameCount).catch(() => {}); // who shows it hears of it
   }
 }
 
@@ -239,6 +258,8 @@ async function open() {
     console.error(error);
   }
   window.isochorReady = true;
+  window.isochorOpened = performance.now(); // ms since the browser set out for this page: the first picture is shown
+  window.isochorViewer?.run.unpackAhead();
 }
 
 open();

@@ -149,7 +149,8 @@ export class Overlays {
       const finite = [p.x, p.y, p.z].every(Number.isFinite);
       if (finite) p.project(camera);
       label.hidden = !finite || Math.abs(p.z) > 1;
-      label.style.transform = `translate(${((p.x + 1) / 2) * width + 10}px, ${((1 - p.y) / 2) * height - 22}px)`;
+      const place = `translate(${((p.x + 1) / 2) * width + 10}px, ${((1 - p.y) / 2) * height - 22}px)`;
+      if (label.style.transform !== place) label.style.transform = place;
     });
   }
 }

@@ -25,6 +25,12 @@ function charts(series) {
   return out;
 }
 
+/** Lines of a logarithmic axis at powers of ten: those between would be a gray band. */
+const decades = (lines) => ({
+  ...lines,
+  filter: (_, splits) => splits.map((v) => (v > 0 && Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-6 ? v : null)),
+});
+
 const finiteOrNull = (v) => (Number.isFinite(v) ? v : null);
 
 export class Plots {
@@ -35,6 +41,7 @@ export class Plots {
     this.time = run.head.frames[0]?.time ?? null;
     this.plots = [];
     this.waiting = new Map();
+    this.readTime = -Infinity;
     this.observer = new ResizeObserver(() => this.resize());
     // A chart is drawn when it comes near the window: those below it cost nothing while the page opens.
     this.near = new IntersectionObserver((entries) => {
@@ -111,7 +118,9 @@ export class Plots {
     const format = (_, values) => values.map((v) => (v === null ? '' : significant(v, 5)));
     const { x } = this.run.head;
     const used = chart.units.filter((unit) => scaleOf.get(unit).values.length > 0);
-    const scales = { x: { time: false } };
+    // A single point stands in the middle of a short axis.
+    const single = data[0].length === 1 ? [data[0][0] - 0.5, data[0][0] + 0.5] : null;
+    const scales = { x: { time: false, range: (_, low, high) => single ?? [low, high] } };
     for (const unit of used) {
       scales[scaleOf.get(unit).key] = log ? { distr: 3 } : {
         range: (_, low, high) => {
@@ -134,9 +143,9 @@ export class Plots {
           const names = chart.series.filter((m) => m.unit === unit);
           const label = names.length === 1 ? names[0].name : '';
           return {
-            ...axis, scale: s.key, side: i === 0 ? 3 : 1, size: width, values: format, labelSize: 18,
+            ...axis, scale: s.key, ...(log ? { ticks: decades(axis.ticks), grid: decades(axis.grid) } : {}), side: i === 0 ? 3 : 1, size: width, values: format, labelSize: 18,
             label: [label, s.unit ? `[${s.unit}]` : ''].filter(Boolean).join(' ') || undefined,
-            grid: i === 0 ? axis.grid : { show: false },
+            ...(i === 0 ? {} : { grid: { show: false } }),
           };
         }),
       ],
@@ -184,11 +193,15 @@ export class Plots {
     u.setLegend({ idx: best });
   }
 
-  setTime(time) {
+  /** While playing, the numbers in the keys change a few times a second: faster than that nobody reads. */
+  setTime(time, playing = false) {
     this.time = time;
+    const now = performance.now();
+    const read = !playing || now - this.readTime > 250;
+    if (read) this.readTime = now;
     for (const { plot } of this.plots) {
       this.placeMarker(plot);
-      this.readAt(plot);
+      if (read) this.readAt(plot);
     }
   }
 

@@ -182,3 +182,15 @@ void main() {
   float alpha = 1.0 - smoothstep(1.0 - w, 1.0, r);
   gl_FragColor = vec4(mix(color, ring, smoothstep(0.62 - w, 0.62, r)), alpha * opacity);
 }`;
+
+/** A picture as it is, pixel for pixel. */
+export const copyVertex = /* glsl */ `
+void main() {
+  gl_Position = vec4(position.xy, 0.0, 1.0);
+}`;
+
+export const copyFragment = /* glsl */ `
+uniform sampler2D picture;
+void main() {
+  gl_FragColor = texelFetch(picture, ivec2(gl_FragCoord.xy), 0);
+}`;

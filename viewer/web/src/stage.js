@@ -3,6 +3,13 @@ import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { Body } from './body.js';
 import { Overlays } from './overlays.js';
+import { Pace, QUALITIES } from './pace.js';
+import { copyFragment, copyVertex } from './shaders.js';
+
+// Colors are those of the display from end to end, wherever they are drawn to.
+THREE.ColorManagement.enabled = false;
+
+const REST = 160; // ms without a change, then the picture is drawn at its best
 
 const VIEWS = {
   iso: [-55, 24], front: [-90, 0], back: [90, 0], right: [0, 0], left: [180, 0], top: [-90, 89.99], bottom: [-90, -89.99],
@@ -33,8 +40,14 @@ export class Stage {
     this.run = run;
     this.host = host;
     this.canvas = host.querySelector('canvas');
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true, stencil: true });
+    // Smoothing of edges is a matter of each picture (pace.js), which the canvas itself does not allow.
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: false, alpha: true, stencil: true });
+    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     this.renderer.setClearColor(0, 0);
+    this.renderer.info.autoReset = false;
+    this.pace = new Pace();
+    this.playing = false;
+    this.changed = -Infinity; // when something last changed
     this.scene = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(26, 1, 0.05, 100);
     this.up = run.head.up === 'y' ? 'y' : 'z';
@@ -61,10 +74,57 @@ export class Stage {
     new ResizeObserver(() => this.resize()).observe(this.host);
   }
 
+  /** Something has changed: there will be a picture of it, one for all that changes until then. */
   invalidate() {
     if (this.pending || !this.opened) return;
     this.pending = true;
-    requestAnimationFrame(() => { this.pending = false; this.draw(); });
+    requestAnimationFrame(() => { if (this.pending) this.drawChange(); });
+  }
+
+  /** From now on until it is over the picture moves all the time. */
+  setPlaying(on) {
+    this.playing = on;
+    if (!on) this.settle();
+  }
+
+  /** A single change is drawn at its best at once; one of many as quickly as the machine asks for. */
+  drawChange() {
+    const now = performance.now();
+    const moves = this.playing || now - this.changed < REST;
+    this.changed = now;
+    if (moves) this.drawMoving(now);
+    else this.draw();
+  }
+
+  drawMoving(now = performance.now()) {
+    this.drawAt(this.pace.quality);
+    this.measure(now);
+    this.settle();
+  }
+
+  /** What was drawn in haste is drawn again once nothing moves. */
+  settle() {
+    clearTimeout(this.rest);
+    if (this.playing || this.drawn === 0) return;
+    this.rest = setTimeout(() => { if (!this.playing && this.drawn !== 0) this.draw(); }, REST);
+  }
+
+  /** Tells the pace how long a picture took, as soon as the browser knows that it is done. */
+  measure(start) {
+    if (this.measured) return;
+    const gl = this.renderer.getContext();
+    const { pace } = this;
+    this.measured = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    if (!this.measured) return; // the context is lost
+    gl.flush();
+    const look = (now) => {
+      const done = gl.getSyncParameter(this.measured, gl.SYNC_STATUS) === gl.SIGNALED;
+      if (!done && !gl.isContextLost()) { requestAnimationFrame(look); return; }
+      gl.deleteSync(this.measured);
+      this.measured = null;
+      pace.took(now - start);
+    };
+    requestAnimationFrame(look);
   }
 
   resize() {
@@ -72,28 +132,71 @@ export class Stage {
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
     if (width === 0 || height === 0 || this.size === `${width} ${height} ${ratio}`) return;
     this.size = `${width} ${height} ${ratio}`;
-    this.renderer.setPixelRatio(ratio);
+    this.ratio = ratio;
+    this.resolution = null;
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.body.uniforms.pixel.value = ratio;
-    this.overlays.resize(ratio);
     if (this.view) this.look(this.view, this.zoom); // until the reader has moved the camera
     if (this.opened) this.draw();
   }
 
-  draw() {
+  /** Pixels of the canvas for one of the window. */
+  setResolution(resolution) {
+    if (this.resolution === resolution) return;
+    this.resolution = resolution;
+    this.renderer.setPixelRatio(resolution);
+    this.body.uniforms.pixel.value = resolution;
+    this.overlays.resize(resolution);
+  }
+
+  /** At its best, now. */
+  draw() { this.drawAt(0); }
+
+  drawAt(quality) {
+    this.pending = false;
+    this.drawn = quality;
+    const { share, smooth } = QUALITIES[quality];
+    this.setResolution(this.ratio * share);
     const up = this.body.uniforms.upEye.value.copy(this.camera.up);
     this.camera.updateMatrixWorld();
     up.transformDirection(this.camera.matrixWorldInverse);
     // All of it lies in a sphere of radius one.
     this.body.setInside(this.camera.position.length() < 1 + 2 * this.camera.near);
-    this.renderer.render(this.scene, this.camera);
+    this.renderer.info.reset();
+    if (smooth) this.renderSmooth();
+    else this.renderer.render(this.scene, this.camera);
     this.overlays.placeLabels(this.camera, this.host.clientWidth, this.host.clientHeight);
     this.drawTriad();
   }
 
+  /** Four samples a pixel, resolved and copied to the canvas as they are. */
+  renderSmooth() {
+    const { renderer } = this;
+    const { width, height } = this.canvas;
+    if (!this.samples) {
+      this.samples = new THREE.WebGLRenderTarget(width, height, {
+        samples: 4, stencilBuffer: true, minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter,
+      });
+      const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute('position', new THREE.BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
+      this.copy = new THREE.Mesh(geometry, new THREE.ShaderMaterial({
+        uniforms: { picture: { value: this.samples.texture } }, vertexShader: copyVertex, fragmentShader: copyFragment,
+        depthTest: false, depthWrite: false, blending: THREE.NoBlending,
+      }));
+      this.copy.frustumCulled = false;
+    }
+    this.samples.setSize(width, height);
+    renderer.setRenderTarget(this.samples);
+    renderer.render(this.scene, this.camera);
+    renderer.setRenderTarget(null);
+    renderer.render(this.copy, this.camera);
+  }
+
   drawTriad() {
+    const seen = this.camera.matrixWorldInverse.elements.slice(0, 11).join();
+    if (this.triadSeen === seen) return; // new elements would have the browser paint again what lies over the picture
+    this.triadSeen = seen;
     const p = new THREE.Vector3();
     const arms = ['x', 'y', 'z'].map((axis, i) => {
       p.set(+(i === 0), +(i === 1), +(i === 2)).transformDirection(this.camera.matrixWorldInverse);

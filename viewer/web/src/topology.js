@@ -21,53 +21,117 @@ export function faceNormals(positions, triangles, out = new Float32Array(triangl
  */
 export function buildTopology(rest, triangles, trianglePart, partCount) {
   const corners = triangles.length;
-  const parent = new Int32Array(corners).map((_, i) => i);
-  const find = (i) => {
-    while (parent[i] !== i) { parent[i] = parent[parent[i]]; i = parent[i]; }
-    return i;
-  };
+  const { parent, find } = sets(corners);
   const normals = faceNormals(rest, triangles);
   const smooth = (f, g) => {
     let d = 0, ff = 0, gg = 0;
     for (let k = 0; k < 3; ++k) {
-      d += normals[3 * f + k] * normals[3 * g + k];
-      ff += normals[3 * f + k] ** 2;
-      gg += normals[3 * g + k] ** 2;
+      const p = normals[3 * f + k], q = normals[3 * g + k];
+      d += p * q;
+      ff += p * p;
+      gg += q * q;
     }
     return d >= CREASE_COSINE * Math.sqrt(ff * gg);
   };
   const closed = new Array(partCount).fill(true);
-  const open = new Map(); // edge seen once so far -> its first corner
-  const vertices = rest.length / 3;
+  const next = (c) => (c % 3 === 2 ? c - 2 : c + 1);
+  // Edges seen once so far, by their first vertex: chains of the corners they start at.
+  const first = new Int32Array(rest.length / 3).fill(-1), link = new Int32Array(corners).fill(-1);
+  const ending = (from, to) => {
+    let c = first[from];
+    while (c >= 0 && triangles[next(c)] !== to) c = link[c];
+    return c;
+  };
+  const remove = (from, corner) => {
+    if (first[from] === corner) { first[from] = link[corner]; return; }
+    let c = first[from];
+    while (link[c] !== corner) c = link[c];
+    link[c] = link[corner];
+  };
   for (let c = 0; c < corners; ++c) {
-    const f = Math.floor(c / 3);
-    const next = c % 3 === 2 ? c - 2 : c + 1;
-    const [a, b] = [triangles[c], triangles[next]];
-    const twin = open.get(b * vertices + a);
-    if (twin === undefined) {
+    const f = (c - (c % 3)) / 3;
+    const a = triangles[c], b = triangles[next(c)];
+    const twin = ending(b, a);
+    if (twin < 0) {
       // Two triangles along an edge in the same direction: not an oriented surface, never filled.
-      if (open.has(a * vertices + b)) closed[trianglePart[f]] = false;
-      open.set(a * vertices + b, c);
+      const same = ending(a, b);
+      if (same >= 0) { closed[trianglePart[f]] = false; remove(a, same); }
+      link[c] = first[a];
+      first[a] = c;
       continue;
     }
-    open.delete(b * vertices + a);
-    const g = Math.floor(twin / 3);
+    remove(b, twin);
+    const g = (twin - (twin % 3)) / 3;
     if (trianglePart[f] !== trianglePart[g]) { closed[trianglePart[f]] = closed[trianglePart[g]] = false; continue; }
     if (!smooth(f, g)) continue;
-    const twinNext = twin % 3 === 2 ? twin - 2 : twin + 1;
-    parent[find(c)] = find(twinNext);
-    parent[find(next)] = find(twin);
+    parent[find(c)] = find(next(twin));
+    parent[find(next(c))] = find(twin);
   }
-  for (const c of open.values()) closed[trianglePart[Math.floor(c / 3)]] = false;
+  for (let c of first) for (; c >= 0; c = link[c]) closed[trianglePart[(c - (c % 3)) / 3]] = false;
 
-  const group = new Int32Array(corners);
-  const number = new Map();
-  for (let c = 0; c < corners; ++c) {
-    const root = find(c);
-    if (!number.has(root)) number.set(root, number.size);
-    group[c] = number.get(root);
+  const { number: group, count: groupCount } = numbered(corners, find);
+  return { group, groupCount, closed };
+}
+
+/** Disjoint sets of 0 to count - 1, joined by setting the parent of one root to another. */
+function sets(count) {
+  const parent = new Int32Array(count);
+  for (let i = 0; i < count; ++i) parent[i] = i;
+  const find = (i) => {
+    while (parent[i] !== i) { parent[i] = parent[parent[i]]; i = parent[i]; }
+    return i;
+  };
+  return { parent, find };
+}
+
+/** The set of each element, numbered in the order they are met. */
+function numbered(elements, find) {
+  const known = new Int32Array(elements).fill(-1), number = new Int32Array(elements);
+  let count = 0;
+  for (let i = 0; i < elements; ++i) {
+    const root = find(i);
+    if (known[root] < 0) known[root] = count++;
+    number[i] = known[root];
   }
-  return { group, groupCount: number.size, closed };
+  return { number, count };
+}
+
+/**
+ * For each triangle whether it bounds a hollow inside a closed part: nothing of that is seen from outside while
+ * the part is whole. Such a piece of surface encloses a negative volume and lies in the box of one that encloses a
+ * positive volume.
+ */
+export function hollows(rest, triangles, trianglePart, closed) {
+  const { parent, find } = sets(rest.length / 3);
+  for (let c = 0; c < triangles.length; c += 3) {
+    parent[find(triangles[c])] = find(triangles[c + 1]);
+    parent[find(triangles[c])] = find(triangles[c + 2]);
+  }
+  const { number, count } = numbered(rest.length / 3, find);
+  const part = new Int32Array(count).fill(-1), volume = new Float64Array(count);
+  const low = new Float32Array(3 * count).fill(Infinity), high = new Float32Array(3 * count).fill(-Infinity);
+  for (let c = 0; c < triangles.length; c += 3) {
+    const piece = number[triangles[c]];
+    part[piece] = trianglePart[c / 3];
+    const i = 3 * triangles[c], j = 3 * triangles[c + 1], k = 3 * triangles[c + 2];
+    volume[piece] += rest[i] * (rest[j + 1] * rest[k + 2] - rest[j + 2] * rest[k + 1])
+      + rest[i + 1] * (rest[j + 2] * rest[k] - rest[j] * rest[k + 2]) + rest[i + 2] * (rest[j] * rest[k + 1] - rest[j + 1] * rest[k]);
+  }
+  for (let v = 0; v < number.length; ++v) {
+    for (let k = 0, at = 3 * number[v]; k < 3; ++k, ++at) {
+      low[at] = Math.min(low[at], rest[3 * v + k]);
+      high[at] = Math.max(high[at], rest[3 * v + k]);
+    }
+  }
+  // Nodes inside a body are pieces of their own and of no part.
+  const outer = [], inner = [];
+  for (let p = 0; p < count; ++p) if (part[p] >= 0 && closed[part[p]]) (volume[p] > 0 ? outer : inner).push(p);
+  const within = (p, q) => part[p] === part[q] && [0, 1, 2].every((k) => low[3 * q + k] < low[3 * p + k] && high[3 * q + k] > high[3 * p + k]);
+  const hollow = new Uint8Array(count);
+  for (const p of inner) hollow[p] = volume[p] < 0 && outer.some((q) => within(p, q)) ? 1 : 0;
+  const out = new Uint8Array(trianglePart.length);
+  for (let f = 0; f < out.length; ++f) out[f] = hollow[number[triangles[3 * f]]];
+  return out;
 }
 
 /** Area-weighted unit normals, one a smooth group. */
