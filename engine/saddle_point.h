@@ -135,10 +135,13 @@ class SaddlePoint {
   double mass_scale_ = 0;  // of this solve
   Definiteness definiteness_ = Definiteness::exact;  // of this solve
   bool mended_ = false;                              // the last factors are not those of the exact matrix
-  double shift_ = 0;                                 // the last one that mended the inertia in this solve
-  bool has_gap_ = false;                             // given coordinates that are not at their targets yet
-  double inertia_energy_ = 0;                        // at the last force residual
-  double law_energy_ = 0;  // of the rows with a law of their own, at the last residual
+  // In a body whose stiffness varies a shift holds the stiff part, which may only turn, against what the soft
+  // part does: it goes down as far as it may.
+  static constexpr double smallest_shift = 1e-10;
+  double shift_ = 0;           // the last one that mended the inertia in this solve
+  bool has_gap_ = false;       // given coordinates that are not at their targets yet
+  double inertia_energy_ = 0;  // at the last force residual
+  double law_energy_ = 0;      // of the rows with a law of their own, at the last residual
   std::vector<double> theta_, stiffness_, magnitude_, rest_stiffness_, prescribed_phi_;
   // Rows with laws: strain and tangent (one for each compliance entry).
   std::vector<double> strain_, tangent_;
