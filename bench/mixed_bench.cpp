@@ -31,6 +31,7 @@ struct Case {
   Solver solver;
   bool mixed;
   double poisson;
+  bool condensed = false;  // one pressure an element, condensed, instead of one a node
 };
 constexpr Case kCases[] = {{"multifrontal", Solver::multifrontal, false, 0.4999},
                            {"mumps", Solver::mumps, false, 0.4999},
@@ -40,12 +41,14 @@ constexpr Case kCases[] = {{"multifrontal", Solver::multifrontal, false, 0.4999}
                            {"multifrontal", Solver::multifrontal, true, 0.4999},
                            {"multifrontal", Solver::multifrontal, true, 0.5},
                            {"mumps", Solver::mumps, true, 0.5},
-                           {"iterative", Solver::iterative, true, 0.5}};
+                           {"iterative", Solver::iterative, true, 0.5},
+                           {"multifrontal", Solver::multifrontal, true, 0.4999, true},
+                           {"cholmod_supernodal", Solver::cholmod_supernodal, true, 0.4999, true}};
 
 struct Cost {
   bool there = false, good = true;
   Index unknowns = 0;
-  double iteration = HUGE_VAL;  // [s]
+  double iteration = HUGE_VAL, step = HUGE_VAL;  // [s]
   int factorizations = 0, corrections = 0;
   std::int64_t linear_iterations = 0;
 };
@@ -78,7 +81,7 @@ void measure(const Case& c, const BoxMeshDef& box, Element element, int threads,
   options.gravity = {0, 0, -9.81};
   options.gravity_curve = Curve::ramp(1);
   options.solver = c.solver;
-  options.method = Method::saddle_point;
+  options.method = c.condensed ? Method::condensation : Method::saddle_point;
   options.threads = threads;
   Result<World> made = World::create(options);
   if (!made) return;  // not part of this build
@@ -91,6 +94,7 @@ void measure(const Case& c, const BoxMeshDef& box, Element element, int threads,
   if (c.mixed) {
     VolumeDef rows;
     rows.body = body;
+    if (c.condensed) rows.space = VolumeSpace::element;
     must(world.add(volume(rows)));
   }
   DirichletDef fixed;
@@ -109,7 +113,9 @@ void measure(const Case& c, const BoxMeshDef& box, Element element, int threads,
     cost.corrections += r.corrections;
     cost.linear_iterations += r.linear_iterations;
   }
-  cost.iteration = std::min(cost.iteration, (processor_seconds() - start) / std::max(1, cost.factorizations));
+  const double seconds = processor_seconds() - start;
+  cost.iteration = std::min(cost.iteration, seconds / std::max(1, cost.factorizations));
+  cost.step = std::min(cost.step, seconds / 3);
   cost.unknowns = world.size().displacement_unknowns + (c.mixed ? world.size().multipliers : 0);
 }
 
@@ -131,11 +137,15 @@ void compare(double tets, Element element, int repeats, int threads) {
     const Cost& cost = costs[k];
     if (!cost.there) continue;
     std::printf(
-        "  %-10s nu %.4f  %-20s %7d unknowns, %8.2f ms an iteration, %2d iterations, %2d corrections, %4lld "
-        "linear, %.2f of the best displacement-only%s\n",
-        c.mixed ? "mixed" : "one field", c.poisson, c.solver_name, cost.unknowns, 1e3 * cost.iteration,
-        cost.factorizations, cost.corrections, static_cast<long long>(cost.linear_iterations),
-        cost.iteration / displacement_only, cost.good ? "" : "  NOT CONVERGED");
+        "  %-18s nu %.4f  %-20s %7d unknowns, %8.2f ms an iteration, %8.2f ms an increment, %2d iterations, "
+        "%2d "
+        "corrections, %4lld linear, %.2f of the best displacement-only iteration%s\n",
+        c.condensed ? "mixed, by element"
+        : c.mixed   ? "mixed"
+                    : "one field",
+        c.poisson, c.solver_name, cost.unknowns, 1e3 * cost.iteration, 1e3 * cost.step, cost.factorizations,
+        cost.corrections, static_cast<long long>(cost.linear_iterations), cost.iteration / displacement_only,
+        cost.good ? "" : "  NOT CONVERGED");
   }
   std::fflush(stdout);
 }
