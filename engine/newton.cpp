@@ -80,7 +80,7 @@ bool Newton::mend_direction(const SaddleProblem& p, std::span<const Vec3> x, std
   const auto works = [&](double shift) {
     return factor_shifted(p.mass_scale, shift, report) && direction(lambda, report) && descends(p, x, lambda);
   };
-  for (double shift = shift_ > 0 ? std::max(smallest_shift, shift_ / 10) : 1e-3; shift < 1; shift *= 6) {
+  for (double shift = shift_ > 0 ? std::max(smallest_shift, shift_ / 3) : 1e-3; shift < 1; shift *= 6) {
     if (works(shift)) {
       shift_ = shift;
       return true;

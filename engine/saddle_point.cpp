@@ -305,7 +305,7 @@ bool SaddlePoint::factor(const SaddleProblem& p, std::span<const Vec3> x, std::s
   }
   ++report.shifted;
   // Starting from a third of what the last wrong inertia took finds the size in one or two trials.
-  double shift = shift_ > 0 ? std::max(smallest_shift, shift_ / 10) : 1e-3;
+  double shift = shift_ > 0 ? std::max(smallest_shift, shift_ / 3) : 1e-3;
   for (; shift < 1; shift *= 6) {
     if (factor_shifted(p.mass_scale, shift, report)) {
       shift_ = shift;
