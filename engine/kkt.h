@@ -62,7 +62,7 @@ class Kkt {
              std::span<double> dlambda, StageSeconds& seconds);
 
   // The same for a matrix next to the one last factored, whose factors precondition: with an unsymmetric part
-  // added (null: none), and other condensed rows held at a bound. Until the residual is `tolerance` of the
+  // added (null: none), and other rows held at a bound. Until the residual is `tolerance` of the
   // right-hand side, scaled unknowns in the Euclidean norm; false when it is not in the few steps there is
   // room for. prepare_coupled() takes the memory; without it, and where coupled_possible() says no, nothing
   // is solved.
@@ -70,6 +70,7 @@ class Kkt {
     return system_->bordered_rows().empty() && system_->dual_rows().empty();
   }
   void prepare_coupled();
+  bool holds(std::span<const std::uint8_t> clamped) const;  // whether the factors hold these rows
   bool solve_coupled(const UnsymmetricPart* part, std::span<const std::uint8_t> clamped,
                      std::span<const Vec3> node_rhs, std::span<const double> row_rhs, double tolerance,
                      std::span<Vec3> dx, std::span<double> dlambda, StageSeconds& seconds);
@@ -144,10 +145,11 @@ class Kkt {
   double residual_ = 0;
   std::vector<double> values_, scale_, rhs_, solution_;
   // For matrices next to the one factored: which condensed row a row is (-1: none), what the factors hold at
-  // a bound, condensed rows that are held and free the other way round, and steps and forces of nodes.
+  // a bound, rows that are held and free the other way round, which rows
+  // may be, and steps and forces of nodes.
   std::optional<Gmres> gmres_;
-  std::vector<std::uint8_t> factored_held_;
-  std::vector<double> free_compliance_;
+  std::vector<std::uint8_t> factored_held_, movable_;
+  std::vector<double> free_compliance_, own_compliance_;
   std::vector<Index> changed_;
   std::vector<Index> condensed_index_;
   std::vector<Vec3> coupled_dx_, coupled_force_;

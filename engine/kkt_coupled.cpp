@@ -21,7 +21,20 @@ void Kkt::prepare_coupled() {
   condensed_index_.assign(at(s.rows()), -1);
   for (std::size_t k = 0; k < s.condensed_rows().size(); ++k)
     condensed_index_[at(s.condensed_rows()[k])] = static_cast<Index>(k);
-  if (s.has_bounds()) factored_held_.assign(at(s.rows()), 0);
+  if (s.has_bounds()) {
+    factored_held_.assign(at(s.rows()), 0);
+    movable_.assign(at(s.rows()), 1);
+    own_compliance_.assign(at(s.rows()), 0);
+    for (const ComplianceEntry& e : s.compliance()) {
+      if (e.row != e.col) movable_[at(e.row)] = movable_[at(e.col)] = 0;
+      if (e.row == e.col) own_compliance_[at(e.row)] += e.value;
+    }
+    for (const auto& law : s.laws()) {
+      const auto first = movable_.begin() + s.first_row(law.row_pool);
+      std::fill(first, first + s.parts().row_pools[at(law.row_pool)]->rows(), std::uint8_t{0});
+    }
+    row_jacobian_.resize(s.jacobian_ends().size());
+  }
   free_compliance_.assign(s.condensed_rows().size(), 0);
   changed_.reserve(s.condensed_rows().size());
   coupled_dx_.resize(at(s.nodes()));
@@ -61,7 +74,7 @@ void Kkt::add_scaled_forces(double factor, std::span<const Vec3> force, std::spa
   }
 }
 
-// Condensed rows as they are held now; false when a row that is an unknown of the matrix changes.
+// Rows as they are held now; false when one changes whose compliance ties it to others.
 bool Kkt::take_held(std::span<const std::uint8_t> clamped) {
   changed_.clear();
   for (std::size_t r = 0; r < factored_held_.size(); ++r) {
@@ -70,8 +83,15 @@ bool Kkt::take_held(std::span<const std::uint8_t> clamped) {
     if (k >= 0 && held != (condensed_compliance_[at(k)] == kHeld))
       condensed_compliance_[at(k)] = held ? kHeld : free_compliance_[at(k)];
     if (held == (factored_held_[r] != 0)) continue;
-    if (k < 0) return false;
+    if (k < 0 && movable_[r] == 0) return false;
     changed_.push_back(static_cast<Index>(r));
+  }
+  return true;
+}
+
+bool Kkt::holds(std::span<const std::uint8_t> clamped) const {
+  for (std::size_t r = 0; r < factored_held_.size(); ++r) {
+    if ((factored_held_[r] != 0) != (!clamped.empty() && clamped[r] != 0)) return false;
   }
   return true;
 }
@@ -83,8 +103,19 @@ void Kkt::coupled_times(const UnsymmetricPart* part, std::span<const std::uint8_
   const System& s = *system_;
   matrix_times(u, w);
   for (const Index r : changed_) {
-    const double sign = factored_held_[at(r)] != 0 ? 1 : -1;
-    add_row_force(r, sign * row_dot(r, u) / free_compliance_[at(condensed_index_[at(r)])], w);
+    const bool released = factored_held_[at(r)] != 0;
+    const double sign = released ? 1 : -1;
+    const Index k = condensed_index_[at(r)];
+    if (k >= 0) {
+      add_row_force(r, sign * row_dot(r, u) / free_compliance_[at(k)], w);
+      continue;
+    }
+    // A row that is an unknown: its entries, and the diagonal in place of them while it is held.
+    const Index unknown = s.row_unknown()[at(r)];
+    const double scale = scale_[at(unknown)], step = u[at(unknown)];
+    add_row_force(r, sign * scale * step, w);
+    w[at(unknown)] = released ? scale * (row_dot(r, u) - own_compliance_[at(r)] * scale * step)
+                              : -s.row_metric()[at(r)] * scale * scale * step;
   }
   if (part == nullptr) return;
   to_nodes(u, coupled_dx_);

@@ -40,10 +40,7 @@ Newton::Newton(std::shared_ptr<const System> system, const Parallel& parallel,
   to_bound_.assign(s.has_bounds() || s.has_lag() ? m : 0, 0);
   if (s.has_bounds()) bound_.assign(m, 0);
   if (s.has_lag()) part_.emplace(system_, parallel);
-  const auto condensed = s.condensed_rows();
-  moves_bounds_ = kkt_.coupled_possible() && std::any_of(condensed.begin(), condensed.end(), [&](Index r) {
-    return std::isfinite(s.row_lower()[at(r)]) || std::isfinite(s.row_upper()[at(r)]);
-  });
+  moves_bounds_ = kkt_.coupled_possible() && s.has_bounds();
   if (kkt_.coupled_possible() && (part_ || moves_bounds_)) kkt_.prepare_coupled();
 }
 
@@ -425,11 +422,16 @@ bool Newton::close_enough(const SaddleReport& report) {
 bool Newton::correct_coupled(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                              std::span<double> lambda, SaddleReport& report) {
   constexpr int most = 6;
+  const bool adds = coupling_ == Coupling::added;
   for (int k = 0; k < most; ++k) {
     position_gap(p, x);
     if (has_gap_) return false;
-    if (coupling_ == Coupling::added && part_) part_->evaluate(assembly_, x);
-    if (coupling_ == Coupling::added && moves_bounds_) choose_clamped(lambda, false);
+    if (adds && part_) part_->evaluate(assembly_, x);
+    if (adds && moves_bounds_) {
+      choose_clamped(lambda, false);
+      // Where it is the very matrix that was factored, its own solve is as exact as a solve can be.
+      if (!part_) coupling_ = kkt_.holds(clamped_) ? Coupling::none : Coupling::added;
+    }
     if (!direction(lambda, report)) return false;
     const double force = report.force_residual, row = report.row_residual;
     try_coupled(p, 1, x, lambda, report);
