@@ -35,8 +35,8 @@ void Gmres::begin(std::span<const double> b) {
   for (std::size_t i = 0; i < size_; ++i) v[i] = inverse * b[i];
 }
 
-// basis(k + 1) holds A z_k: made orthogonal to the basis (modified Gram-Schmidt), its column of the Hessenberg
-// matrix rotated into the triangle.
+// basis(k + 1) holds A z_k: made orthogonal to the basis (modified Gram-Schmidt), its column of the
+// Hessenberg matrix rotated into the triangle.
 bool Gmres::extend(int k) {
   const auto w = basis(k + 1);
   const double before = std::sqrt(dot(w, w));

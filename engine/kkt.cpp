@@ -404,8 +404,7 @@ void Kkt::to_nodes(std::span<const double> u, std::span<Vec3> dx) const {
   const auto first = s.first_unknown();
   for (Index i = 0; i < s.nodes(); ++i) {
     Vec3 q{};
-    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c)
-      q[c - first[at(i)]] = scale_[at(c)] * u[at(c)];
+    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) q[c - first[at(i)]] = scale_[at(c)] * u[at(c)];
     const Index b = s.basis_of()[at(i)];
     dx[at(i)] = b >= 0 ? s.free_bases()[at(b)].directions * q : q;
   }

@@ -66,9 +66,7 @@ class Kkt {
   // right-hand side, scaled unknowns in the Euclidean norm; false when it is not in the few steps there is
   // room for. prepare_coupled() takes the memory; without it, and where coupled_possible() says no, nothing
   // is solved.
-  bool coupled_possible() const {
-    return system_->bordered_rows().empty() && system_->dual_rows().empty();
-  }
+  bool coupled_possible() const { return system_->bordered_rows().empty() && system_->dual_rows().empty(); }
   void prepare_coupled();
   bool holds(std::span<const std::uint8_t> clamped) const;  // whether the factors hold these rows
   bool solve_coupled(const UnsymmetricPart* part, std::span<const std::uint8_t> clamped,

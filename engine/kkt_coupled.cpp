@@ -36,7 +36,7 @@ void Kkt::prepare_coupled() {
     row_jacobian_.resize(s.jacobian_ends().size());
   }
   free_compliance_.assign(s.condensed_rows().size(), 0);
-  changed_.reserve(s.condensed_rows().size());
+  changed_.reserve(at(s.rows()));
   coupled_dx_.resize(at(s.nodes()));
   coupled_force_.resize(at(s.nodes()));
   coupled_dlambda_.assign(at(s.rows()), 0);
@@ -162,7 +162,6 @@ bool Kkt::solve_coupled(const UnsymmetricPart* part, std::span<const std::uint8_
       [&](std::span<double> u) { return factored_->precondition(u); });
   if (steps < 0) return false;
   residual_ = gmres_->start_norm() > 0 ? gmres_->left() / gmres_->start_norm() : 0;
-  if (getenv("H1DBG")) fprintf(stderr, "   gmres %d steps, %zu changed, left %.2e of %.2e\n", steps, changed_.size(), gmres_->left(), gmres_->start_norm());
   end_solve(row_rhs, dx, dlambda);
   return residual_ <= tolerance;
 }

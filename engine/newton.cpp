@@ -134,16 +134,21 @@ bool Newton::direction(std::span<const double> lambda, SaddleReport& report) {
   }
   for (std::size_t i = 0; i < r_.size(); ++i) node_rhs_[i] = -(r_[i] + node_work_[i]);
   const std::int64_t before = kkt_.dual_iterations(), linear_before = kkt_.linear_iterations();
-  const auto clamped = any_clamped_ ? std::span<const std::uint8_t>(clamped_) : std::span<const std::uint8_t>();
+  const auto clamped =
+      any_clamped_ ? std::span<const std::uint8_t>(clamped_) : std::span<const std::uint8_t>();
   const bool ok = coupling_ == Coupling::added
-                      ? kkt_.solve_coupled(part_ ? &*part_ : nullptr, clamped, node_rhs_, row_rhs_, coupled_tolerance_, dx_,
-                                           lambda_new_, seconds_)
+                      ? kkt_.solve_coupled(part_ ? &*part_ : nullptr, clamped, node_rhs_, row_rhs_,
+                                           coupled_tolerance_, dx_, lambda_new_, seconds_)
                       : kkt_.solve(node_rhs_, row_rhs_, dx_, lambda_new_, seconds_);
   report.dual_iterations += kkt_.dual_iterations() - before;
   report.linear_iterations += kkt_.linear_iterations() - linear_before;
   report.linear_residual = kkt_.residual();
   for (std::size_t i = 0; i < dx_.size(); ++i) dx_[i] += gap_[i];
   for (std::size_t r = 0; r < theta_.size(); ++r) lambda_new_[r] += lambda[r];
+  // What is solved in steps is not exact, but a bound is.
+  for (std::size_t r = 0; coupling_ == Coupling::added && any_clamped_ && r < clamped_.size(); ++r) {
+    if (clamped_[r]) lambda_new_[r] = bound_[r];
+  }
   return ok && std::all_of(dx_.begin(), dx_.end(), finite);
 }
 
@@ -423,6 +428,7 @@ bool Newton::correct_coupled(const SaddleProblem& p, const SaddleOptions& option
                              std::span<double> lambda, SaddleReport& report) {
   constexpr int most = 6;
   const bool adds = coupling_ == Coupling::added;
+  bool moved = false;
   for (int k = 0; k < most; ++k) {
     position_gap(p, x);
     if (has_gap_) return false;
@@ -430,7 +436,8 @@ bool Newton::correct_coupled(const SaddleProblem& p, const SaddleOptions& option
     if (adds && moves_bounds_) {
       choose_clamped(lambda, false);
       // Where it is the very matrix that was factored, its own solve is as exact as a solve can be.
-      if (!part_) coupling_ = kkt_.holds(clamped_) ? Coupling::none : Coupling::added;
+      moved = moved || part_ || !kkt_.holds(clamped_);
+      coupling_ = moved ? Coupling::added : Coupling::none;
     }
     if (!direction(lambda, report)) return false;
     const double force = report.force_residual, row = report.row_residual;
@@ -440,7 +447,6 @@ bool Newton::correct_coupled(const SaddleProblem& p, const SaddleOptions& option
     const bool done = balanced(p, options, x_trial_, lambda_trial_, report);
     const bool pays = report.force_residual <= std::max(worthwhile * force, options.force_tolerance) &&
                       report.row_residual <= std::max(worthwhile * row, options.row_tolerance);
-    if (getenv("H1DBG")) fprintf(stderr, "   corr %d: %.3e %.3e -> %.3e %.3e%s\n", k, force, row, report.force_residual, report.row_residual, pays ? "" : " X");
     if (!pays) return false;
     std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
     std::copy(lambda_trial_.begin(), lambda_trial_.end(), lambda.begin());
@@ -454,18 +460,19 @@ bool Newton::correct_coupled(const SaddleProblem& p, const SaddleOptions& option
 bool Newton::correct(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                      std::span<double> lambda, SaddleReport& report) {
   if (!options.corrections || !full_step_ || !close_enough(report)) return false;
-  if ((part_ || moves_bounds_) && kkt_.coupled_possible() && !getenv("H1OLD")) {
+  if ((part_ || moves_bounds_) && kkt_.coupled_possible()) {
     if (part_) {
       assembly_.renew_lag(x, lambda, p.prescribed);
-      assembly_.evaluate(Want::gradient, Definiteness::exact, x, lambda, p.prescribed);
+      assembly_.evaluate_lagging(Want::gradient, x);
       assemble_residual(p, x, lambda);
       if (balanced(p, options, x, lambda, report)) return true;
     }
     coupling_ = Coupling::added;
-    coupled_tolerance_ = getenv("H1TOL") ? atof(getenv("H1TOL")) : correction_tolerance;
+    coupled_tolerance_ = correction_tolerance;
     const bool done = correct_coupled(p, options, x, lambda, report);
     coupling_ = Coupling::none;
-    return done;
+    // Steep friction may ask for steps that hold the lag instead.
+    if (done || !part_ || !kkt_.holds(clamped_)) return done;
   }
   const bool lags = system_->has_lag();
   for (int k = 0; k < (lags ? 12 : 6); ++k) {

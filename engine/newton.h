@@ -54,8 +54,8 @@ class Newton : public SaddlePoint {
   bool full_step_ = false;
   std::optional<UnsymmetricPart> part_;  // of systems with a lag whose derivatives are known
   Coupling coupling_ = Coupling::none;
-  double coupled_tolerance_ = 0;  // of Coupling::added
-  bool moves_bounds_ = false;     // corrections may change which rows are held
+  double coupled_tolerance_ = 0;          // of Coupling::added
+  bool moves_bounds_ = false;             // corrections may change which rows are held
   std::vector<double> bound_, to_bound_;  // rows with bounds: the bound, and how far away it is
 
  private:

@@ -107,8 +107,7 @@ void UnsymmetricPart::place_columns() {
     if (k == 0 || column_source_[k].end != column_source_[k - 1].end) column_run_.push_back(k);
   }
   column_run_.push_back(column_source_.size());
-  for (const ColumnSource& source : column_source_)
-    rows_.push_back(system_->jacobian_ends()[source.end][0]);
+  for (const ColumnSource& source : column_source_) rows_.push_back(system_->jacobian_ends()[source.end][0]);
   std::sort(rows_.begin(), rows_.end());
   rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
 }
