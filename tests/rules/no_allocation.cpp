@@ -41,7 +41,7 @@ TEST_CASE("a warm solve with friction allocates nothing, its corrections include
     tool.obstacle.shape = ObstacleShape::sphere;
     tool.obstacle.radius = 0.12;
     tool.obstacle.position = {0.103, 0.102, 0.22};
-    tool.obstacle.motion.keys = {{0, {0, 0, 0}, {1, 0, 0, 0}}, {1, {0.012, 0, -0.01}, {1, 0, 0, 0}}};
+    tool.obstacle.motion.keys = {{0, {0, 0, 0}, {1, 0, 0, 0}}, {1, {0.012, 0, -0.04}, {1, 0, 0, 0}}};
     const Compiled scene = compile({def}, {volume({}), dirichlet(clamp), contact(tool)}, true);
     INFO(scene.error);
     REQUIRE(scene.system);
