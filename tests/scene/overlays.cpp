@@ -283,7 +283,7 @@ TEST_CASE("the contact pressure of a run reaches its page") {
   record.time = 0.1;
   append();
   const test::Scratch folder("contact_page");
-  const std::string path = (folder.path / "index.html").string();
+  const std::string path = (folder / "index.html").string();
   const auto written = page->write(view, path);
   INFO((written ? std::string() : written.error()));
   REQUIRE(written);
