@@ -1,11 +1,11 @@
 // What contact adds to the Newton iteration of a time step.
 //
-//   isochor_bench_contact [--quick] [--surfaces] [--pairs N] [--threads N]
+//   isochor_bench_contact [--quick] [--surfaces] [--only WORD] [--pairs N] [--threads N]
 //
 // A slab of 11,532 Tet4 (1,944 with --quick) with nodal rows lies on a floor under its weight, in time steps
 // of 10 ms: with all nodes of its underside in contact, hard or soft, without friction and with it, lagged
 // and coupled, and, in turns with each, the same slab without floor and weight, whose positions are as many
-// unknowns. The ratio is the median over the pairs.
+// unknowns. The ratio is the median over the pairs. --only takes the cases whose name has the word in it.
 #include <isochor/contact.h>
 #include <isochor/effects.h>
 #include <isochor/generate.h>
@@ -210,20 +210,23 @@ void compare(const Case& c, int pairs, bool quick, int threads) {
 
 int main(int argc, char** argv) {
   bool quick = false, surfaces_only = false;
+  const char* only = "";
   int pairs = 3, threads = 0;
   for (int i = 1; i < argc; ++i) {
     if (std::strcmp(argv[i], "--quick") == 0) {
       quick = true;
     } else if (std::strcmp(argv[i], "--surfaces") == 0) {
       surfaces_only = true;
+    } else if (std::strcmp(argv[i], "--only") == 0 && i + 1 < argc) {
+      only = argv[++i];
     } else if (std::strcmp(argv[i], "--pairs") == 0 && i + 1 < argc) {
       pairs = std::max(1, std::atoi(argv[++i]));
     } else if (std::strcmp(argv[i], "--threads") == 0 && i + 1 < argc) {
       threads = std::atoi(argv[++i]);
     } else {
       std::fprintf(stderr,
-                   "isochor_bench_contact: \"%s\" is no option; there are --quick, --surfaces, --pairs N and "
-                   "--threads N\n",
+                   "isochor_bench_contact: \"%s\" is no option; there are --quick, --surfaces, --only WORD, "
+                   "--pairs N and --threads N\n",
                    argv[i]);
       return 2;
     }
@@ -237,7 +240,10 @@ int main(int argc, char** argv) {
       {{"hard, 0.3, coupled", On::floor, 0, 0.3, FrictionCoupling::coupled}, kFree},
       {{"soft, 0.3, coupled", On::floor, 1e-8, 0.3, FrictionCoupling::coupled}, kFree}};
   if (!surfaces_only) {
-    for (const Case& c : kFloors) compare(c, pairs, quick, threads);
+    for (const Case& c : kFloors) {
+      if (std::strstr(c.touching.what, only)) compare(c, pairs, quick, threads);
+    }
   }
-  compare({{"soft on soft", On::slab}, {"apart", On::far_slab}}, pairs, quick, threads);
+  constexpr Case kSurfaces{{"soft on soft", On::slab}, {"apart", On::far_slab}};
+  if (std::strstr(kSurfaces.touching.what, only)) compare(kSurfaces, pairs, quick, threads);
 }

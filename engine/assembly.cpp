@@ -101,30 +101,38 @@ void Assembly::evaluate(Want want, Definiteness definiteness, std::span<const Ve
                         std::span<const double> lambda, std::span<const double> prescribed) {
   const System& s = *system_;
   if (want != Want::value) gather_multipliers(lambda, prescribed, multiplier_);
-  const auto& pools = s.parts().stencil_pools;
+  for (std::size_t p = 0; p < s.parts().stencil_pools.size(); ++p) evaluate_pool(p, want, definiteness, x);
+}
+
+void Assembly::evaluate_lagging(Want want, std::span<const Vec3> x) {
+  const auto& pools = system_->parts().stencil_pools;
   for (std::size_t p = 0; p < pools.size(); ++p) {
-    const StencilPool& pool = *pools[p];
-    const PoolPlace& place = s.places()[p];
-    const auto slots = pool.nodes().item.size();
-    const auto functions = static_cast<std::size_t>(pool.functions());
-    const auto stencils = at(pool.stencils());
-    const auto blocks = pool.has_hessian() ? static_cast<std::size_t>(pool.hessian_offset().back()) : 0;
-    const auto part = [](auto& all, std::int64_t first, std::size_t count) {
-      return std::span(all.data() + first, count);
-    };
-    const StencilSlots out{
-        part(energy_, place.energy, stencils), part(value_, place.function, stencils * functions),
-        part(gradient_, place.gradient, slots), part(jacobian_, place.jacobian, slots * functions),
-        part(hessian_, place.hessian, blocks)};
-    StencilRequest whole = request(static_cast<Index>(p), want, x);
-    whole.definiteness = definiteness;
-    parallel_.run(pool.stencils(), pool.grain(), [&](Index b, Index e) {
-      StencilRequest part_of = whole;
-      part_of.begin = b;
-      part_of.end = e;
-      pool.evaluate(part_of, out);
-    });
+    if (pools[p]->has_lag()) evaluate_pool(p, want, Definiteness::exact, x);
   }
+}
+
+void Assembly::evaluate_pool(std::size_t p, Want want, Definiteness definiteness, std::span<const Vec3> x) {
+  const StencilPool& pool = *system_->parts().stencil_pools[p];
+  const PoolPlace& place = system_->places()[p];
+  const auto slots = pool.nodes().item.size();
+  const auto functions = static_cast<std::size_t>(pool.functions());
+  const auto stencils = at(pool.stencils());
+  const auto blocks = pool.has_hessian() ? static_cast<std::size_t>(pool.hessian_offset().back()) : 0;
+  const auto part = [](auto& all, std::int64_t first, std::size_t count) {
+    return std::span(all.data() + first, count);
+  };
+  const StencilSlots out{
+      part(energy_, place.energy, stencils), part(value_, place.function, stencils * functions),
+      part(gradient_, place.gradient, slots), part(jacobian_, place.jacobian, slots * functions),
+      part(hessian_, place.hessian, blocks)};
+  StencilRequest whole = request(static_cast<Index>(p), want, x);
+  whole.definiteness = definiteness;
+  parallel_.run(pool.stencils(), pool.grain(), [&](Index b, Index e) {
+    StencilRequest part_of = whole;
+    part_of.begin = b;
+    part_of.end = e;
+    pool.evaluate(part_of, out);
+  });
 }
 
 double Assembly::energy() const {

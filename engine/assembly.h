@@ -29,6 +29,9 @@ class Assembly {
   // Evaluates all pools at x with the multipliers of compliant and prescribed rows, up to `want`.
   void evaluate(Want want, Definiteness definiteness, std::span<const Vec3> x, std::span<const double> lambda,
                 std::span<const double> prescribed);
+  // The same for pools with a lag alone, at the positions and multipliers of the last evaluation: what a lag
+  // that was renewed since has changed.
+  void evaluate_lagging(Want want, std::span<const Vec3> x);
 
   // The following read the last evaluation.
   double energy() const;                                    // sum over stencils [J], fixed order
@@ -61,6 +64,7 @@ class Assembly {
   std::size_t memory_bytes() const;
 
  private:
+  void evaluate_pool(std::size_t p, Want want, Definiteness definiteness, std::span<const Vec3> x);
   void gather_block(std::int64_t block, Mat3& sum) const;
   void gather_multipliers(std::span<const double> lambda, std::span<const double> prescribed,
                           std::span<double> out) const;

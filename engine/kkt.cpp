@@ -7,9 +7,6 @@
 
 namespace isochor {
 
-// In place of the compliance of a condensed row that is held at a bound.
-static constexpr double kHeld = 0;
-
 namespace {
 
 double now() {
@@ -140,6 +137,7 @@ void Kkt::add_filled(const Values& values) {
     double weight =
         condensed ? 1 / compliance_of(values, s.diagonal_compliance()[at(row)]) : weight_[at(row)];
     if (condensed) condensed_compliance_[k] = held ? kHeld : 1 / weight;
+    if (condensed && gmres_) free_compliance_[k] = 1 / weight;
     if (held) weight = 0;
     const auto begin = s.row_jacobian_begin()[at(row)], end = s.row_jacobian_begin()[at(row) + 1];
     for (std::size_t a = begin; a < end; ++a) {
@@ -200,14 +198,14 @@ double Kkt::row_dot(Index row, std::span<const double> v) const {
   return sum;
 }
 
-// rhs_ += G_r^T multiplier.
-void Kkt::add_row_force(Index row, double multiplier) {
+// w += G_r^T multiplier.
+void Kkt::add_row_force(Index row, double multiplier, std::span<double> w) const {
   const System& s = *system_;
   const auto first = s.first_unknown();
   for (auto d = s.row_jacobian_begin()[at(row)]; d < s.row_jacobian_begin()[at(row) + 1]; ++d) {
     const Index i = s.jacobian_ends()[d][1];
     for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) {
-      rhs_[at(c)] += scale_[at(c)] * row_jacobian_[d][c - first[at(i)]] * multiplier;
+      w[at(c)] += scale_[at(c)] * row_jacobian_[d][c - first[at(i)]] * multiplier;
     }
   }
 }
@@ -283,6 +281,12 @@ Kkt::Outcome Kkt::factor(const Assembly& assembly, const Values& values, StageSe
         const auto place = s.compliance_place()[k];
         if (place >= 0) values_[static_cast<std::size_t>(place)] -= values.tangent[k];
       }
+    }
+    if (!factored_held_.empty()) {
+      if (values.clamped.empty())
+        std::fill(factored_held_.begin(), factored_held_.end(), std::uint8_t{0});
+      else
+        std::copy(values.clamped.begin(), values.clamped.end(), factored_held_.begin());
     }
     if (!values.clamped.empty()) {
       // A row held at a bound leaves the system, with a diagonal that keeps the inertia.
@@ -404,21 +408,20 @@ void Kkt::to_unknowns(std::span<const Vec3> node_rhs) {
   }
 }
 
-// The displacement part of solution_ as steps of all nodes.
-void Kkt::to_nodes(std::span<Vec3> dx) const {
+// The displacement part of scaled unknowns as steps of all nodes.
+void Kkt::to_nodes(std::span<const double> u, std::span<Vec3> dx) const {
   const System& s = *system_;
   const auto first = s.first_unknown();
   for (Index i = 0; i < s.nodes(); ++i) {
     Vec3 q{};
-    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c)
-      q[c - first[at(i)]] = scale_[at(c)] * solution_[at(c)];
+    for (Index c = first[at(i)]; c < first[at(i) + 1]; ++c) q[c - first[at(i)]] = scale_[at(c)] * u[at(c)];
     const Index b = s.basis_of()[at(i)];
     dx[at(i)] = b >= 0 ? s.free_bases()[at(b)].directions * q : q;
   }
 }
 
-bool Kkt::solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs, std::span<Vec3> dx,
-                std::span<double> dlambda, StageSeconds& seconds) {
+// Right-hand sides of the matrix and its border.
+void Kkt::begin_solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs) {
   const System& s = *system_;
   const auto condensed = s.condensed_rows(), bordered = s.bordered_rows();
   to_unknowns(node_rhs);
@@ -432,10 +435,15 @@ bool Kkt::solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs,
     // Of a row held at a bound -D dlambda = g is left, as in the matrix.
     if (condensed_compliance_[k] == kHeld) continue;
     condensed_part_[k] = row_rhs[at(condensed[k])] / condensed_compliance_[k];
-    add_row_force(condensed[k], condensed_part_[k]);
+    add_row_force(condensed[k], condensed_part_[k], rhs_);
   }
   for (std::size_t j = 0; j < bordered.size(); ++j) border_rhs_[j] = row_rhs[at(bordered[j])];
-  const bool ok = s.dual_rows().empty() ? solve_matrix(seconds) : solve_dual(row_rhs, seconds);
+}
+
+// From the unknowns of the matrix and its border to steps.
+void Kkt::end_solve(std::span<const double> row_rhs, std::span<Vec3> dx, std::span<double> dlambda) {
+  const System& s = *system_;
+  const auto condensed = s.condensed_rows(), bordered = s.bordered_rows();
   for (std::size_t j = 0; j < bordered.size(); ++j) dlambda[at(bordered[j])] = border_value_[j];
   for (const Index r : s.dual_rows()) dlambda[at(r)] = cg_x_[at(r)];
   for (std::size_t k = 0; k < condensed.size(); ++k) {
@@ -446,11 +454,18 @@ bool Kkt::solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs,
     const double sum = row_dot(condensed[k], solution_);
     dlambda[at(condensed[k])] = sum / condensed_compliance_[k] - condensed_part_[k];
   }
-  to_nodes(dx);
+  to_nodes(solution_, dx);
   for (Index r = 0; r < s.rows(); ++r) {
     const Index u = s.row_unknown()[at(r)];
     if (u >= 0) dlambda[at(r)] = scale_[at(u)] * solution_[at(u)];
   }
+}
+
+bool Kkt::solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs, std::span<Vec3> dx,
+                std::span<double> dlambda, StageSeconds& seconds) {
+  begin_solve(node_rhs, row_rhs);
+  const bool ok = system_->dual_rows().empty() ? solve_matrix(seconds) : solve_dual(row_rhs, seconds);
+  end_solve(row_rhs, dx, dlambda);
   return ok;
 }
 

@@ -4,6 +4,9 @@
 // (conjugate gradients on their multipliers around the factorization).
 #pragma once
 
+#include <optional>
+
+#include "engine/gmres.h"
 #include "engine/unsymmetric_part.h"
 
 namespace isochor {
@@ -59,6 +62,18 @@ class Kkt {
   bool solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs, std::span<Vec3> dx,
              std::span<double> dlambda, StageSeconds& seconds);
 
+  // The same for a matrix next to the one last factored, whose factors precondition: with an unsymmetric part
+  // added (null: none), and other rows held at a bound. Until the residual is `tolerance` of the
+  // right-hand side, scaled unknowns in the Euclidean norm; false when it is not in the few steps there is
+  // room for. prepare_coupled() takes the memory; without it, and where coupled_possible() says no, nothing
+  // is solved.
+  bool coupled_possible() const { return system_->bordered_rows().empty() && system_->dual_rows().empty(); }
+  void prepare_coupled();
+  bool holds(std::span<const std::uint8_t> clamped) const;  // whether the factors hold these rows
+  bool solve_coupled(const UnsymmetricPart* part, std::span<const std::uint8_t> clamped,
+                     std::span<const Vec3> node_rhs, std::span<const double> row_rhs, double tolerance,
+                     std::span<Vec3> dx, std::span<double> dlambda, StageSeconds& seconds);
+
   // For systems whose rows are all dual. Weights W of the augmentation, one a row, for given values; then,
   // with the matrix factored: dx = A^-1 node_rhs, and q = T^T (C + G A^-1 G^T T) p as kkt_dual.cpp has it.
   std::span<const double> dual_weights(const Values& values) {
@@ -93,13 +108,21 @@ class Kkt {
   void prepare_dual(const Values& values);
   Outcome factor_values(LinearSolver& solver, bool& analyzed, std::span<const double> values,
                         StageSeconds& seconds);
+  void begin_solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs);
+  void end_solve(std::span<const double> row_rhs, std::span<Vec3> dx, std::span<double> dlambda);
+  bool take_held(std::span<const std::uint8_t> clamped);
+  void coupled_times(const UnsymmetricPart* part, std::span<const std::uint8_t> clamped,
+                     std::span<const double> u, std::span<double> w);
+  void move_constant_part(const UnsymmetricPart& part);
+  void matrix_times(std::span<const double> u, std::span<double> w) const;
+  void add_scaled_forces(double factor, std::span<const Vec3> force, std::span<double> w) const;
   bool solve_matrix(StageSeconds& seconds);
   bool solve_dual(std::span<const double> row_rhs, StageSeconds& seconds);
   void to_unknowns(std::span<const Vec3> node_rhs);
-  void to_nodes(std::span<Vec3> dx) const;
+  void to_nodes(std::span<const double> u, std::span<Vec3> dx) const;
   void weigh(std::span<const double> v, std::span<double> out) const;
   void add_dual_compliance(double alpha, std::span<const double> v, std::span<double> y) const;
-  void add_row_force(Index row, double multiplier);
+  void add_row_force(Index row, double multiplier, std::span<double> w) const;
   double row_dot(Index row, std::span<const double> v) const;
   Outcome factor_scaled(const Values& values, StageSeconds& seconds);
   Outcome eliminate_border(const Values& values, Outcome outcome);
@@ -120,9 +143,20 @@ class Kkt {
   LinearSolver* factored_;
   double residual_ = 0;
   std::vector<double> values_, scale_, rhs_, solution_;
+  // For matrices next to the one factored: which condensed row a row is (-1: none), what the factors hold at
+  // a bound, rows that are held and free the other way round, which rows
+  // may be, and steps and forces of nodes.
+  std::optional<Gmres> gmres_;
+  std::vector<std::uint8_t> factored_held_, movable_;
+  std::vector<double> free_compliance_, own_compliance_;
+  std::vector<Index> changed_;
+  std::vector<Index> condensed_index_;
+  std::vector<Vec3> coupled_dx_, coupled_force_;
+  std::vector<double> coupled_dlambda_;
   // Rows outside the matrix: their Jacobian in free directions, the compliance of condensed ones and, for the
   // border, A^-1 B and the factored Schur complement.
   std::vector<Vec3> row_jacobian_;
+  static constexpr double kHeld = 0;  // in place of the compliance of a condensed row that is held at a bound
   std::vector<double> condensed_compliance_, condensed_part_;
   std::vector<double> border_solution_, schur_, schur_vectors_, border_value_, border_work_, border_rhs_,
       border_kept_;

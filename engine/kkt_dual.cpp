@@ -78,7 +78,7 @@ bool Kkt::apply_dual(std::span<const double> p, std::span<double> q, StageSecond
   weigh(p, cg_work_);
   std::fill(rhs_.begin(), rhs_.end(), 0.0);
   std::fill(border_rhs_.begin(), border_rhs_.end(), 0.0);
-  for (const Index r : rows) add_row_force(r, cg_work_[at(r)]);
+  for (const Index r : rows) add_row_force(r, cg_work_[at(r)], rhs_);
   if (!solve_matrix(seconds)) return false;
   for (const Index r : rows) q[at(r)] = active_[at(r)] * row_dot(r, solution_);
   add_dual_compliance(1, p, q);
@@ -95,7 +95,7 @@ bool Kkt::solve_stiffness(std::span<const Vec3> node_rhs, std::span<Vec3> dx, St
   residual_ = 0;
   to_unknowns(node_rhs);
   const bool ok = solve_matrix(seconds);
-  to_nodes(dx);
+  to_nodes(solution_, dx);
   return ok;
 }
 
@@ -110,7 +110,7 @@ bool Kkt::solve_dual(std::span<const double> row_rhs, StageSeconds& seconds) {
     for (const Index r : rows) cg_z_[at(r)] = active_[at(r)] * cg_r_[at(r)] / preconditioner_[at(r)];
   };
   for (const Index r : rows) {
-    if (active_[at(r)] > 0 && weight_[at(r)] > 0) add_row_force(r, weight_[at(r)] * row_rhs[at(r)]);
+    if (active_[at(r)] > 0 && weight_[at(r)] > 0) add_row_force(r, weight_[at(r)] * row_rhs[at(r)], rhs_);
   }
   std::copy(rhs_.begin(), rhs_.end(), matrix_rhs_.begin());
   std::copy(border_rhs_.begin(), border_rhs_.end(), border_kept_.begin());
@@ -148,7 +148,7 @@ bool Kkt::solve_dual(std::span<const double> row_rhs, StageSeconds& seconds) {
   weigh(cg_x_, cg_work_);
   std::copy(matrix_rhs_.begin(), matrix_rhs_.end(), rhs_.begin());
   std::copy(border_kept_.begin(), border_kept_.end(), border_rhs_.begin());
-  for (const Index r : rows) add_row_force(r, -cg_work_[at(r)]);
+  for (const Index r : rows) add_row_force(r, -cg_work_[at(r)], rhs_);
   ok = solve_matrix(seconds) && ok;
   const auto metric = system_->row_metric();
   for (const Index r : rows) {

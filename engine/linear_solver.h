@@ -85,6 +85,12 @@ class LinearSolver {
   // Solves with iterative refinement against the values last factored (which must still be alive and
   // unchanged).
   virtual SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) = 0;
+  // x := M^-1 x, M what the factors last made are exactly those of: next to the matrix. False where there are
+  // no factors.
+  virtual bool precondition(std::span<double> x) {
+    (void)x;
+    return false;
+  }
 };
 
 enum class SolverKind : std::uint8_t {

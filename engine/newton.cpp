@@ -37,10 +37,11 @@ Newton::Newton(std::shared_ptr<const System> system, const Parallel& parallel,
   venture_.dx.resize(n);
   venture_.lambda.resize(m);
   venture_.lambda_new.resize(m);
-  if (s.has_bounds()) {
-    bound_.assign(m, 0);
-    to_bound_.assign(m, 0);
-  }
+  to_bound_.assign(s.has_bounds() || s.has_lag() ? m : 0, 0);
+  if (s.has_bounds()) bound_.assign(m, 0);
+  if (s.has_lag()) part_.emplace(system_, parallel);
+  moves_bounds_ = kkt_.coupled_possible() && s.has_bounds();
+  if (kkt_.coupled_possible() && (part_ || moves_bounds_)) kkt_.prepare_coupled();
 }
 
 // The active set of the primal-dual active-set method: a row whose multiplier would leave its bounds under
@@ -127,15 +128,27 @@ bool Newton::direction(std::span<const double> lambda, SaddleReport& report) {
         row_rhs_[r] += row_work_[r];
     }
   }
-  add_force_rate(node_work_);
+  if (coupling_ != Coupling::none && part_ && (has_gap_ || any_clamped_)) {
+    if (!any_clamped_) std::fill(to_bound_.begin(), to_bound_.end(), 0.0);
+    part_->add_times(gap_, to_bound_, node_work_);
+  }
   for (std::size_t i = 0; i < r_.size(); ++i) node_rhs_[i] = -(r_[i] + node_work_[i]);
   const std::int64_t before = kkt_.dual_iterations(), linear_before = kkt_.linear_iterations();
-  const bool ok = kkt_.solve(node_rhs_, row_rhs_, dx_, lambda_new_, seconds_);
+  const auto clamped =
+      any_clamped_ ? std::span<const std::uint8_t>(clamped_) : std::span<const std::uint8_t>();
+  const bool ok = coupling_ == Coupling::added
+                      ? kkt_.solve_coupled(part_ ? &*part_ : nullptr, clamped, node_rhs_, row_rhs_,
+                                           coupled_tolerance_, dx_, lambda_new_, seconds_)
+                      : kkt_.solve(node_rhs_, row_rhs_, dx_, lambda_new_, seconds_);
   report.dual_iterations += kkt_.dual_iterations() - before;
   report.linear_iterations += kkt_.linear_iterations() - linear_before;
   report.linear_residual = kkt_.residual();
   for (std::size_t i = 0; i < dx_.size(); ++i) dx_[i] += gap_[i];
   for (std::size_t r = 0; r < theta_.size(); ++r) lambda_new_[r] += lambda[r];
+  // What is solved in steps is not exact, but a bound is.
+  for (std::size_t r = 0; coupling_ == Coupling::added && any_clamped_ && r < clamped_.size(); ++r) {
+    if (clamped_[r]) lambda_new_[r] = bound_[r];
+  }
   return ok && std::all_of(dx_.begin(), dx_.end(), finite);
 }
 
@@ -386,13 +399,81 @@ void Newton::keep_multipliers(const SaddleProblem& p, std::span<const Vec3> x, s
   assemble_residual(p, x, lambda);
 }
 
+// Moves the trial point to tau along the direction, multipliers within their bounds, renews the lag and
+// evaluates there.
+void Newton::try_coupled(const SaddleProblem& p, double tau, std::span<const Vec3> x,
+                         std::span<const double> lambda, SaddleReport& report) {
+  const Stopwatch watch(seconds_.line_search);
+  ++report.trials;
+  for (std::size_t i = 0; i < x.size(); ++i) x_trial_[i] = x[i] + tau * dx_[i];
+  for (std::size_t r = 0; r < lambda.size(); ++r)
+    lambda_trial_[r] = lambda[r] + tau * (lambda_new_[r] - lambda[r]);
+  clamp(lambda_trial_);
+  assembly_.renew_lag(x_trial_, lambda_trial_, p.prescribed);
+  assembly_.evaluate(Want::gradient, Definiteness::exact, x_trial_, lambda_trial_, p.prescribed);
+  assemble_residual(p, x_trial_, lambda_trial_);
+}
+
+// Less of a reduction by a correction, and a new factorization is the better buy.
+static constexpr double worthwhile = 0.3;
+
+// Corrections are tried from here on.
+bool Newton::close_enough(const SaddleReport& report) {
+  return report.force_residual <= 1e-2 && report.row_residual <= 1e-2;
+}
+
+// Further steps of a system with a lag that know how forces change with it, with the factors at hand,
+// symmetric or not. True when the state is in balance. The last evaluation was at x, with a lag of there.
+bool Newton::correct_coupled(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
+                             std::span<double> lambda, SaddleReport& report) {
+  constexpr int most = 6;
+  const bool adds = coupling_ == Coupling::added;
+  bool moved = false;
+  for (int k = 0; k < most; ++k) {
+    position_gap(p, x);
+    if (has_gap_) return false;
+    if (adds && part_) part_->evaluate(assembly_, x);
+    if (adds && moves_bounds_) {
+      choose_clamped(lambda, false);
+      // Where it is the very matrix that was factored, its own solve is as exact as a solve can be.
+      moved = moved || part_ || !kkt_.holds(clamped_);
+      coupling_ = moved ? Coupling::added : Coupling::none;
+    }
+    if (!direction(lambda, report)) return false;
+    const double force = report.force_residual, row = report.row_residual;
+    try_coupled(p, 1, x, lambda, report);
+    if (!std::isfinite(assembly_.energy())) return false;
+    ++report.corrections;
+    const bool done = balanced(p, options, x_trial_, lambda_trial_, report);
+    const bool pays = report.force_residual <= std::max(worthwhile * force, options.force_tolerance) &&
+                      report.row_residual <= std::max(worthwhile * row, options.row_tolerance);
+    if (!pays) return false;
+    std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
+    std::copy(lambda_trial_.begin(), lambda_trial_.end(), lambda.begin());
+    if (done) return true;
+  }
+  return false;
+}
+
 // Close to the solution the factors at hand are as good as new ones for a step or two: a few percent of the
 // price. True when the state is in balance. A correction that does not pay is dropped.
 bool Newton::correct(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                      std::span<double> lambda, SaddleReport& report) {
-  constexpr double worthwhile = 0.3;  // less of a reduction and a new factorization is the better buy
-  if (!options.corrections || !full_step_ || report.force_residual > 1e-2 || report.row_residual > 1e-2)
-    return false;
+  if (!options.corrections || !full_step_ || !close_enough(report)) return false;
+  if ((part_ || moves_bounds_) && kkt_.coupled_possible()) {
+    if (part_) {
+      assembly_.renew_lag(x, lambda, p.prescribed);
+      assembly_.evaluate_lagging(Want::gradient, x);
+      assemble_residual(p, x, lambda);
+      if (balanced(p, options, x, lambda, report)) return true;
+    }
+    coupling_ = Coupling::added;
+    coupled_tolerance_ = correction_tolerance;
+    const bool done = correct_coupled(p, options, x, lambda, report);
+    coupling_ = Coupling::none;
+    // Steep friction may ask for steps that hold the lag instead.
+    if (done || !part_ || !kkt_.holds(clamped_)) return done;
+  }
   const bool lags = system_->has_lag();
   for (int k = 0; k < (lags ? 12 : 6); ++k) {
     if (lags) {

@@ -13,6 +13,8 @@
 // like any other step.
 #pragma once
 
+#include <optional>
+
 #include "engine/saddle_point.h"
 
 namespace isochor {
@@ -28,9 +30,9 @@ class Newton : public SaddlePoint {
  protected:
   void choose_clamped(std::span<const double> lambda, bool first);
   bool direction(std::span<const double> lambda, SaddleReport& report);
-  // Adds to the rate of the forces [N] along what direction() has settled already: gap_ of given nodes, and
-  // to_bound_ of multipliers that the matrix holds at a bound.
-  virtual void add_force_rate(std::span<Vec3> rate) { (void)rate; }
+  // Who solves for a direction: the factors of the matrix at hand, which may be unsymmetric; or steps on
+  // symmetric factors, of a matrix next to the one wanted (Kkt::solve_coupled).
+  enum class Coupling : std::uint8_t { none, factored, added };
   void begin_search(const SaddleOptions& options);  // of a solve
   bool left_all_bounds(std::span<const Vec3> x) const;
   bool descends(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda);
@@ -38,12 +40,22 @@ class Newton : public SaddlePoint {
                       SaddleReport& report);
   double longest_step(double tau);
   bool search(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda, SaddleReport& report);
+  void try_coupled(const SaddleProblem& p, double tau, std::span<const Vec3> x,
+                   std::span<const double> lambda, SaddleReport& report);
   bool correct(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                std::span<double> lambda, SaddleReport& report);
+  bool correct_coupled(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
+                       std::span<double> lambda, SaddleReport& report);
+  static constexpr double correction_tolerance = 1e-2;  // of the linear systems of corrections
+  static bool close_enough(const SaddleReport& report);
 
   std::vector<double> lambda_new_, lambda_trial_;
   std::vector<Vec3> dx_, x_trial_;
   bool full_step_ = false;
+  std::optional<UnsymmetricPart> part_;  // of systems with a lag whose derivatives are known
+  Coupling coupling_ = Coupling::none;
+  double coupled_tolerance_ = 0;          // of Coupling::added
+  bool moves_bounds_ = false;             // corrections may change which rows are held
   std::vector<double> bound_, to_bound_;  // rows with bounds: the bound, and how far away it is
 
  private:

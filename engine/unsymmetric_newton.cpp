@@ -8,16 +8,9 @@ namespace isochor {
 UnsymmetricNewton::UnsymmetricNewton(std::shared_ptr<const System> system, const Parallel& parallel,
                                      std::unique_ptr<LinearSolver> solver,
                                      std::unique_ptr<LinearSolver> unsymmetric)
-    : Newton(std::move(system), parallel, std::move(solver)), part_(system_, parallel) {
+    : Newton(std::move(system), parallel, std::move(solver)) {
   kkt_.take_unsymmetric(std::move(unsymmetric));
-  no_rows_.assign(at(system_->rows()), 0);
   held_before_ = clamped_;
-}
-
-// Given nodes that have a way to go, and multipliers that go to their bounds, change what others feel.
-void UnsymmetricNewton::add_force_rate(std::span<Vec3> rate) {
-  if (!coupled_ || !(has_gap_ || any_clamped_)) return;
-  part_.add_times(gap_, any_clamped_ ? to_bound_ : no_rows_, rate);
 }
 
 void UnsymmetricNewton::evaluate_here(const SaddleProblem& p, std::span<const Vec3> x,
@@ -54,22 +47,6 @@ double UnsymmetricNewton::residual_energy(std::span<const double> lambda, double
   return std::isfinite(assembly_.energy()) ? sum : std::numeric_limits<double>::infinity();
 }
 
-// Moves the trial point to tau along the direction, multipliers within their bounds, renews the lag and
-// evaluates there.
-double UnsymmetricNewton::try_coupled(const SaddleProblem& p, double tau, std::span<const Vec3> x,
-                                      std::span<const double> lambda, SaddleReport& report) {
-  const Stopwatch watch(seconds_.line_search);
-  ++report.trials;
-  for (std::size_t i = 0; i < x.size(); ++i) x_trial_[i] = x[i] + tau * dx_[i];
-  for (std::size_t r = 0; r < lambda.size(); ++r)
-    lambda_trial_[r] = lambda[r] + tau * (lambda_new_[r] - lambda[r]);
-  clamp(lambda_trial_);
-  assembly_.renew_lag(x_trial_, lambda_trial_, p.prescribed);
-  assembly_.evaluate(Want::gradient, Definiteness::exact, x_trial_, lambda_trial_, p.prescribed);
-  assemble_residual(p, x_trial_, lambda_trial_);
-  return residual_energy(lambda_trial_, 1 - tau);
-}
-
 bool UnsymmetricNewton::factor_coupled(SaddleReport& report) {
   for (;;) {
     Kkt::Values values;
@@ -78,7 +55,7 @@ bool UnsymmetricNewton::factor_coupled(SaddleReport& report) {
     values.tangent = tangent_;
     if (any_clamped_) values.clamped = clamped_;
     values.trace = trace_;
-    values.unsymmetric = &part_;
+    values.unsymmetric = &*part_;
     const Kkt::Outcome f = kkt_.factor(assembly_, values, seconds_);
     ++report.factorizations;
     report.negative_pivots = -1;
@@ -90,13 +67,28 @@ bool UnsymmetricNewton::factor_coupled(SaddleReport& report) {
   }
 }
 
+// The direction of the unsymmetric system: on the factors of its symmetric part, which cost a quarter, as
+// long as these do in this solve.
+bool UnsymmetricNewton::find_coupled(std::span<const double> lambda, SaddleReport& report) {
+  if (!factors_alone_) {
+    coupling_ = Coupling::added;
+    // As exact as a quadratic end asks for.
+    coupled_tolerance_ = std::clamp(0.01 * std::max(report.force_residual, report.row_residual), 1e-9, 1e-3);
+    factor_shifted(mass_scale_, 0, report);
+    report.negative_pivots = -1;
+    if (!singular_ && direction(lambda, report)) return true;
+    factors_alone_ = true;
+  }
+  coupling_ = Coupling::factored;
+  return factor_coupled(report) && direction(lambda, report);
+}
+
 // One iteration with the unsymmetric matrix; false when it finds no smaller residual.
 bool UnsymmetricNewton::coupled_step(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                                      std::span<double> lambda, SaddleReport& report) {
   constexpr double shortest = 0.4;
-  coupled_ = true;
   mended_ = false;
-  const bool found = factor_coupled(report) && direction(lambda, report);
+  const bool found = find_coupled(lambda, report);
   ++report.iterations;
   if (!found) return false;
   const double start = residual_energy(lambda, 1);
@@ -105,7 +97,8 @@ bool UnsymmetricNewton::coupled_step(const SaddleProblem& p, const SaddleOptions
   double tau = longest > 100 * system_->length() ? 100 * system_->length() / longest : 1;
   tau = longest_step(tau);
   for (const double least = shortest * tau; tau >= least;) {
-    const double value = try_coupled(p, tau, x, lambda, report);
+    try_coupled(p, tau, x, lambda, report);
+    const double value = residual_energy(lambda_trial_, 1 - tau);
     if (value <= (1 - 2e-4 * tau) * start || balanced(p, options, x_trial_, lambda_trial_, report)) {
       std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
       std::copy(lambda_trial_.begin(), lambda_trial_.end(), lambda.begin());
@@ -123,7 +116,7 @@ bool UnsymmetricNewton::coupled_step(const SaddleProblem& p, const SaddleOptions
 // One iteration as Newton makes it, from an evaluation at x.
 bool UnsymmetricNewton::lagged_step(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda,
                                     SaddleReport& report) {
-  coupled_ = false;
+  coupling_ = Coupling::none;
   if (!factor(p, x, lambda, report)) {
     if (report.status == SaddleStatus::converged) report.status = SaddleStatus::singular;
     return false;
@@ -141,29 +134,11 @@ bool UnsymmetricNewton::lagged_step(const SaddleProblem& p, std::span<Vec3> x, s
   return false;
 }
 
-// Further steps on the unsymmetric factors at hand, as Newton::correct() takes them. True when the state is
-// in balance.
 bool UnsymmetricNewton::polish(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                                std::span<double> lambda, SaddleReport& report) {
-  constexpr double worthwhile = 0.3, close = 1e-2;
-  constexpr int most = 6;
-  if (!options.corrections || !full_step_ || report.force_residual > close || report.row_residual > close)
-    return false;
-  for (int k = 0; k < most; ++k) {
-    position_gap(p, x);
-    if (has_gap_ || !direction(lambda, report)) return false;
-    const double force = report.force_residual, row = report.row_residual;
-    if (!std::isfinite(try_coupled(p, 1, x, lambda, report))) return false;
-    ++report.corrections;
-    const bool done = balanced(p, options, x_trial_, lambda_trial_, report);
-    const bool pays = report.force_residual <= std::max(worthwhile * force, options.force_tolerance) &&
-                      report.row_residual <= std::max(worthwhile * row, options.row_tolerance);
-    if (!pays) return false;
-    std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
-    std::copy(lambda_trial_.begin(), lambda_trial_.end(), lambda.begin());
-    if (done) return true;
-  }
-  return false;
+  coupled_tolerance_ = correction_tolerance;
+  return options.corrections && full_step_ && close_enough(report) &&
+         correct_coupled(p, options, x, lambda, report);
 }
 
 SaddleReport UnsymmetricNewton::solve(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
@@ -182,6 +157,7 @@ SaddleReport UnsymmetricNewton::solve(const SaddleProblem& p, const SaddleOption
   bool holding = false;
   int stalls = 0, held = 0;  // iterations with the lag held since the last stall
   full_step_ = false;
+  factors_alone_ = !kkt_.coupled_possible();
   for (int iteration = 0;; ++iteration) {
     evaluate_here(p, x, lambda);
     if (iteration == 0 && !std::isfinite(assembly_.energy())) return fail(SaddleStatus::not_finite);
@@ -196,8 +172,8 @@ SaddleReport UnsymmetricNewton::solve(const SaddleProblem& p, const SaddleOption
     const bool settled = full_step_ && clamped_ == held_before_;
     std::copy(clamped_.begin(), clamped_.end(), held_before_.begin());
     if (holding && held >= stalls && (settled || held >= longest_hold)) holding = false;
-    part_.evaluate(assembly_, x);
-    if (part_.vanishes()) {
+    part_->evaluate(assembly_, x);
+    if (part_->vanishes()) {
       if (!lagged_step(p, x, lambda, report)) return report;
     } else if (holding || !coupled_step(p, options, x, lambda, report)) {
       if (!holding) {
@@ -214,7 +190,8 @@ SaddleReport UnsymmetricNewton::solve(const SaddleProblem& p, const SaddleOption
     const bool done = balanced(p, options, x, lambda, report);
     if (progress) progress(report.iterations, report.force_residual, report.row_residual);
     // With the lag held, balance counts only once it is renewed.
-    if (coupled_ ? done || polish(p, options, x, lambda, report) : correct(p, options, x, lambda, report))
+    if (coupling_ == Coupling::none ? correct(p, options, x, lambda, report)
+                                    : done || polish(p, options, x, lambda, report))
       return report;
     if (left_all_bounds(x)) return fail(SaddleStatus::diverged);
   }

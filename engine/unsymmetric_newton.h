@@ -23,24 +23,18 @@ class UnsymmetricNewton final : public Newton {
   SaddleReport solve(const SaddleProblem& problem, const SaddleOptions& options, std::span<Vec3> x,
                      std::span<double> lambda) override;
 
- protected:
-  void add_force_rate(std::span<Vec3> rate) override;
-
  private:
   void evaluate_here(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda);
   bool coupled_step(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                     std::span<double> lambda, SaddleReport& report);
   bool lagged_step(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda, SaddleReport& report);
+  bool find_coupled(std::span<const double> lambda, SaddleReport& report);
   bool factor_coupled(SaddleReport& report);
   bool polish(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
               std::span<double> lambda, SaddleReport& report);
-  double try_coupled(const SaddleProblem& p, double tau, std::span<const Vec3> x,
-                     std::span<const double> lambda, SaddleReport& report);
   double residual_energy(std::span<const double> lambda, double gap_left) const;
 
-  UnsymmetricPart part_;
-  bool coupled_ = false;  // the factors at hand are those of the unsymmetric matrix
-  std::vector<double> no_rows_;
+  bool factors_alone_ = false;             // steps on symmetric factors have failed in this solve
   std::vector<std::uint8_t> held_before_;  // rows held at a bound, an iteration ago
 };
 

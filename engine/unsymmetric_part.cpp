@@ -36,7 +36,7 @@ UnsymmetricPart::UnsymmetricPart(std::shared_ptr<const System> system, const Par
   const auto& all = system_->parts().stencil_pools;
   for (std::size_t p = 0; p < all.size(); ++p) {
     const StencilPool& pool = *all[p];
-    if (!pool.has_lag() || !pool.couples()) continue;
+    if (!pool.has_lag()) continue;
     PoolSlots slots{static_cast<Index>(p), blocks, columns, {0}};
     for (Index s = 0; s < pool.stencils(); ++s) {
       const auto n = static_cast<std::int64_t>(pool.nodes()[s].size());
@@ -107,6 +107,9 @@ void UnsymmetricPart::place_columns() {
     if (k == 0 || column_source_[k].end != column_source_[k - 1].end) column_run_.push_back(k);
   }
   column_run_.push_back(column_source_.size());
+  for (const ColumnSource& source : column_source_) rows_.push_back(system_->jacobian_ends()[source.end][0]);
+  std::sort(rows_.begin(), rows_.end());
+  rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
 }
 
 void UnsymmetricPart::evaluate(const Assembly& assembly, std::span<const Vec3> x) {

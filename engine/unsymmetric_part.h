@@ -8,13 +8,15 @@ namespace isochor {
 
 class UnsymmetricPart {
  public:
-  // Of the pools that couple. All memory is taken here.
+  // Of the pools with a lag; those that do not give its derivatives add zeros. All memory is taken here.
   UnsymmetricPart(std::shared_ptr<const System> system, const Parallel& parallel);
 
   // Asks the pools, at the positions of the assembly's last evaluation (Want::gradient or more), where its
   // lag was renewed.
   void evaluate(const Assembly& assembly, std::span<const Vec3> x);
   bool vanishes() const;  // nothing makes the matrix unsymmetric
+  bool empty() const { return pools_.empty(); }
+  std::span<const Index> rows() const { return rows_; }  // whose multipliers matter
 
   // Adds L and l of [K + L, G^T + l; G, -C] in free directions to the lower triangle and to the transposed
   // upper one, both in kkt() order. Unknowns are scaled, rows held at a bound left out (none: empty).
@@ -52,6 +54,7 @@ class UnsymmetricPart {
   // Sorted by destination; runs of one destination are added up in this order.
   std::vector<BlockSource> block_source_;
   std::vector<ColumnSource> column_source_;
+  std::vector<Index> rows_;
   std::vector<std::size_t> block_run_, column_run_;  // where runs begin, and the end
 };
 

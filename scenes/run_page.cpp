@@ -42,7 +42,13 @@ char up_axis(const SceneDef& scene) {
   return std::abs(scene.gravity.z) > std::abs(scene.gravity.y) ? 'z' : 'y';
 }
 
-std::vector<PageField> page_fields() {
+}  // namespace
+
+bool has_contact(const SceneDef& scene) {
+  return !scene.contacts.empty() || !scene.surface_contacts.empty();
+}
+
+std::vector<PageField> page_fields(const SceneDef& scene) {
   std::vector<PageField> fields(4);
   fields[0].name = "displacement";
   fields[0].label = "Displacement";
@@ -58,8 +64,11 @@ std::vector<PageField> page_fields() {
   fields[3].label = "Volume ratio J";
   fields[3].diverging = true;
   fields[3].center = 1;
+  if (has_contact(scene)) fields.push_back({"contact_pressure", "Contact pressure", "Pa"});
   return fields;
 }
+
+namespace {
 
 template <class Value>
 PageSeries series(const RunResult& r, const char* group, const std::string& name, const char* unit,
@@ -184,7 +193,7 @@ std::unique_ptr<RunPage> RunPage::start(const RunView& view) {
     else
       vertices.push_back({{}, add_page_surface(scene, mesh, surface, part)});
   }
-  scene.fields = page_fields();
+  scene.fields = page_fields(view.scene);
   scene.probes = view.result.probes;
   scene.up = up_axis(view.scene);
   RunOverlays overlays;
@@ -201,7 +210,8 @@ std::unique_ptr<RunPage> RunPage::start(const RunView& view) {
 void RunPage::append(const RunView& view, const std::vector<BodyFields>& fields) {
   PageFrame frame;
   frame.time = view.result.records.back().time;
-  frame.fields.resize(4);
+  const bool contact = has_contact(view.scene);
+  frame.fields.resize(contact ? 5 : 4);
   for (std::size_t b = 0; b < vertices_.size(); ++b) {
     const World& world = view.built.world;
     const BodyId id = view.built.bodies[b];
@@ -217,15 +227,20 @@ void RunPage::append(const RunView& view, const std::vector<BodyFields>& fields)
       frame.fields[3].push_back(ratio);
     };
     const auto& pressure = fields[b].node_pressure;
+    // Empty where no contact is about this body.
+    const auto& touch = fields[b].node_contact_pressure;
+    const auto touched = [&](std::size_t n) { return touch.empty() ? 0.0 : touch[n]; };
     for (const Index node : vertices_[b].nodes) {
       const auto n = static_cast<std::size_t>(node);
       add(x[n], rest[n], pressure[n], von_mises[n], J[n]);
+      if (contact) frame.fields[4].push_back(touched(n));
     }
     for (const EmbeddedPoint& p : vertices_[b].points) {
       const auto of = [&](const auto& list) {
         return interpolated(p, [&](std::size_t n) { return list[n]; });
       };
       add(of(x), of(rest), of(pressure), of(von_mises), of(J));
+      if (contact) frame.fields[4].push_back(interpolated(p, touched));
     }
   }
   overlays_.append(view, frame);

@@ -11,6 +11,10 @@
 
 namespace isochor {
 
+// What bodies of a scene are colored by; the contact pressure where anything may touch.
+bool has_contact(const SceneDef& scene);
+std::vector<PageField> page_fields(const SceneDef& scene);
+
 class RunPage {
  public:
   // Null when this build has no results page.

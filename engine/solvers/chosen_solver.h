@@ -36,6 +36,7 @@ class ChosenSolver final : public LinearSolver {
   FactorReport analyze(const SymmetricPattern& pattern) override;
   FactorReport factor(std::span<const double> values) override;
   SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) override;
+  bool precondition(std::span<double> x) override { return now_->precondition(x); }
 
  private:
   bool use_direct(std::string reason, FactorReport& report);

@@ -103,6 +103,15 @@ SolveReport DirectSolver::solve(std::span<const double> right_hand_side, std::sp
   return report;
 }
 
+bool DirectSolver::precondition(std::span<double> x) {
+  if (!factored_ || x.size() != at(pattern_->size)) return false;
+  try {
+    return x.empty() || apply_inverse(x);
+  } catch (...) {
+    return false;
+  }
+}
+
 SolveReport DirectSolver::refine_as_needed(std::span<const double> b, std::span<double> x) {
   bool inertia_changed = false;
   SolveReport report = refine(b, x);

@@ -17,6 +17,7 @@ class DirectSolver : public LinearSolver {
   FactorReport analyze(const SymmetricPattern& pattern) final;
   FactorReport factor(std::span<const double> values) final;
   SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) final;
+  bool precondition(std::span<double> x) final;
 
  protected:
   virtual FactorReport analyze_pattern() = 0;

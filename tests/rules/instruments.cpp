@@ -50,6 +50,13 @@ FactorReport DenseSolver::factor(std::span<const double> values) {
 SolveReport DenseSolver::solve(std::span<const double> right_hand_side, std::span<double> y) {
   ++calls_->solve;
   std::copy(right_hand_side.begin(), right_hand_side.end(), y.begin());
+  substitute(y);
+  SolveReport report;
+  report.ok = true;
+  return report;
+}
+
+void DenseSolver::substitute(std::span<double> y) {
   for (Index i = 0; i < n_; ++i) {
     for (Index k = 0; k < i; ++k) y[at(i)] -= entry(i, k) * y[at(k)];
   }
@@ -57,9 +64,6 @@ SolveReport DenseSolver::solve(std::span<const double> right_hand_side, std::spa
   for (Index i = n_ - 1; i >= 0; --i) {
     for (Index k = i + 1; k < n_; ++k) y[at(i)] -= entry(k, i) * y[at(k)];
   }
-  SolveReport report;
-  report.ok = true;
-  return report;
 }
 
 void CountingPool::evaluate(const StencilRequest& request, const StencilSlots& slots) const {

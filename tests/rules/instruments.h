@@ -23,8 +23,13 @@ class DenseSolver final : public isochor::LinearSolver {
   isochor::FactorReport analyze(const isochor::SymmetricPattern& pattern) override;
   isochor::FactorReport factor(std::span<const double> values) override;
   isochor::SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) override;
+  bool precondition(std::span<double> x) override {
+    substitute(x);
+    return true;
+  }
 
  private:
+  void substitute(std::span<double> y);
   double& entry(isochor::Index row, isochor::Index col) {
     return L_[isochor::at(row) * isochor::at(n_) + isochor::at(col)];
   }

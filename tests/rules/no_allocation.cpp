@@ -1,5 +1,6 @@
 // Rule: no allocation in a warm step, outside the third-party solver.
 #include "catch.h"
+#include "isochor/contact.h"
 #include "rules/instruments.h"
 #include "support/allocations.h"
 #include "support/worlds.h"
@@ -20,6 +21,56 @@ TEST_CASE("a warm Newton solve allocates nothing") {
     p.data->at_time(*p.scene.system, 0.6);
     const long count = allocations.count();
     CHECK(r.iterations > 0);
+    CHECK(count == 0);
+  }
+}
+
+TEST_CASE("a warm solve with friction allocates nothing, its corrections included") {
+  if (!allocations_are_counted()) return;
+  for (const double compliance : {0.0, 1e-7}) {
+    INFO("compliance " << compliance);
+    BodyDef def;
+    def.mesh = box({3, 3, 2}, {0.2, 0.2, 0.1});
+    def.materials = {{"", neo_hookean(1e5, 0.4), 1000}};
+    DirichletDef clamp;
+    clamp.where.surfaces = {"z0"};
+    ContactDef tool;
+    tool.surfaces = {"z1"};
+    tool.friction = 0.5;
+    tool.compliance = compliance;
+    tool.obstacle.shape = ObstacleShape::sphere;
+    tool.obstacle.radius = 0.12;
+    tool.obstacle.position = {0.103, 0.102, 0.22};
+    tool.obstacle.motion.keys = {{0, {0, 0, 0}, {1, 0, 0, 0}}, {1, {0.012, 0, -0.04}, {1, 0, 0, 0}}};
+    const Compiled scene = compile({def}, {volume({}), dirichlet(clamp), contact(tool)}, true);
+    INFO(scene.error);
+    REQUIRE(scene.system);
+    const System& s = *scene.system;
+    const TbbParallel parallel(1);
+    Newton newton(scene.system, parallel, std::make_unique<DenseSolver>());
+    ProblemData data(s);
+    const std::vector<Vec3> before = s.parts().rest;
+    std::vector<Vec3> x = before;
+    std::vector<double> lambda(at(s.rows()), 0);
+    SaddleProblem problem;
+    const auto solve = [&](double t) {
+      problem.t1 = t;
+      problem.increment = {0, before, 0, t};
+      SaddleOptions options;
+      options.force_tolerance = options.row_tolerance = 1e-12;
+      return newton.solve(problem, options, x, lambda);
+    };
+    data.at_time(s, 0.5);
+    problem = data.problem();
+    REQUIRE(solve(0.5).status == SaddleStatus::converged);
+    data.at_time(s, 0.6);
+    problem = data.problem();
+    const AllocationCount allocations;
+    const SaddleReport r = solve(0.6);
+    const long count = allocations.count();
+    CHECK(r.status == SaddleStatus::converged);
+    INFO(r.iterations << " iterations, residuals " << r.force_residual << ", " << r.row_residual);
+    CHECK(r.corrections > 0);
     CHECK(count == 0);
   }
 }

@@ -7,6 +7,7 @@
 #include "page_surface.h"
 #include "scenes/library.h"
 #include "scenes/run_overlays.h"
+#include "scenes/run_page.h"
 #include "small_scene.h"
 
 using namespace isochor;
@@ -244,4 +245,47 @@ TEST_CASE("rounded edges are drawn round") {
     }
     CHECK(counted > 300);
   }
+}
+
+TEST_CASE("a page has the contact pressure where something may touch, and only there") {
+  SceneDef scene = block();
+  const auto has = [&] {
+    const auto fields = page_fields(scene);
+    return std::any_of(fields.begin(), fields.end(), [](const PageField& f) {
+      return f.name == "contact_pressure" && f.label == "Contact pressure" && f.unit == "Pa" && !f.diverging;
+    });
+  };
+  CHECK(has());
+  scene.contacts.clear();
+  CHECK(!has());
+  scene.surface_contacts.resize(1);
+  CHECK(has());
+}
+
+TEST_CASE("the contact pressure of a run reaches its page") {
+  if (!results_page_available()) return;
+  const SceneDef scene = block();
+  auto built = build(scene, {1});
+  REQUIRE(built.ok());
+  RunResult result;
+  const RunView view{scene, built.value(), result};
+  World& world = built.value().world;
+  const auto page = RunPage::start(view);
+  REQUIRE(page);
+  StepRecord record;
+  const auto append = [&] {
+    record.gauges = world.gauges();
+    result.records = {record};
+    page->append(view, {world.fields(built.value().bodies[0])});
+  };
+  append();
+  REQUIRE(world.advance(0.1).status == StepStatus::converged);
+  record.time = 0.1;
+  append();
+  const test::Scratch folder("contact_page");
+  const std::string path = (folder / "index.html").string();
+  const auto written = page->write(view, path);
+  INFO((written ? std::string() : written.error()));
+  REQUIRE(written);
+  CHECK(test::slurp(path).find("\"Contact pressure\"") != std::string::npos);
 }

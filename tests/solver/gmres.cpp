@@ -1,0 +1,91 @@
+// The generalized minimal residual method on small dense systems.
+#include "engine/gmres.h"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <vector>
+
+#include "catch.h"
+
+using namespace isochor;
+
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+Eigen::Map<const Vector> view(std::span<const double> v) {
+  return {v.data(), static_cast<Eigen::Index>(v.size())};
+}
+Eigen::Map<Vector> view(std::span<double> v) {
+  return {v.data(), static_cast<Eigen::Index>(v.size())};
+}
+
+// Symmetric indefinite.
+Matrix symmetric(Eigen::Index n) {
+  Matrix a(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) a(i, j) = 1.0 / static_cast<double>(1 + i + j);
+    a(i, i) += i % 3 == 0 ? -2 : 3;
+  }
+  return a;
+}
+
+// Unsymmetric, of the given rank.
+Matrix change(Eigen::Index n, Eigen::Index rank) {
+  Matrix u(n, rank), v(n, rank);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index k = 0; k < rank; ++k) {
+      u(i, k) = std::sin(static_cast<double>(3 * i + 7 * k + 1));
+      v(i, k) = std::cos(static_cast<double>(5 * i - 2 * k));
+    }
+  }
+  return u * v.transpose();
+}
+
+}  // namespace
+
+TEST_CASE("a change of rank k takes k + 1 directions on the factors of the rest") {
+  constexpr Eigen::Index n = 40;
+  const Matrix a = symmetric(n);
+  const Eigen::PartialPivLU<Matrix> factors(a);
+  Vector b(n);
+  for (Eigen::Index i = 0; i < n; ++i) b[i] = std::cos(static_cast<double>(i));
+  for (const Eigen::Index rank : {0, 1, 3, 6}) {
+    INFO("rank " << rank);
+    const Matrix whole = a + (rank > 0 ? change(n, rank) : Matrix(Matrix::Zero(n, n)));
+    Gmres gmres(n, 10);
+    std::vector<double> x(n, 7);
+    const int steps = gmres.solve(
+        {b.data(), at(n)}, x, 1e-10,
+        [&](std::span<const double> v, std::span<double> w) { view(w) = whole * view(v); },
+        [&](std::span<double> v) {
+          const Vector z = factors.solve(view(v));
+          view(v) = z;
+          return true;
+        });
+    CHECK(steps == static_cast<int>(rank) + 1);
+    const double left = (b - whole * view(std::span<const double>(x))).norm();
+    CHECK(left < 1e-9 * b.norm());
+    // What it says is left is what is left.
+    CHECK(std::abs(gmres.left() - left) < 1e-11 * b.norm());
+    CHECK(gmres.start_norm() == Approx(b.norm()));
+  }
+}
+
+TEST_CASE("the method says when its room does not do, and stops at what asked for nothing") {
+  constexpr Eigen::Index n = 40;
+  const Matrix whole = symmetric(n) + change(n, 6);
+  Vector b = Vector::Ones(n);
+  Gmres gmres(n, 3);
+  std::vector<double> x(n, 7);
+  const auto apply = [&](std::span<const double> v, std::span<double> w) { view(w) = whole * view(v); };
+  const auto nothing = [](std::span<double>) { return true; };
+  CHECK(gmres.solve({b.data(), at(n)}, x, 1e-10, apply, nothing) == 3);
+  CHECK(gmres.left() > 1e-6 * b.norm());
+  CHECK(gmres.left() == Approx((b - whole * view(std::span<const double>(x))).norm()).epsilon(1e-9));
+  CHECK(gmres.solve({b.data(), at(n)}, x, 1e-10, apply, [](std::span<double>) { return false; }) == -1);
+  b.setZero();
+  CHECK(gmres.solve({b.data(), at(n)}, x, 1e-10, apply, nothing) == 0);
+  CHECK(view(std::span<const double>(x)).norm() == 0);
+}
