@@ -61,10 +61,10 @@ EffectPtr rigid_body(RigidBodyDef def);
 // How the linear systems see that friction depends on the normal force and turns with the surface. Both end
 // at the same solution.
 enum class FrictionCoupling : std::uint8_t {
-  lagged,   // these are held within an iteration: symmetric systems with a merit, converging in the pace of
-            // the lag
-  coupled,  // they are part of the linear system, which is unsymmetric: quadratic convergence, factors (LU)
-            // of several times the cost, no inertia to watch
+  lagged,   // these are held within an iteration: symmetric systems with a merit. Corrections between
+            // iterations know them, on the factors at hand
+  coupled,  // they are part of the linear system, which is unsymmetric: quadratic convergence, no inertia of
+            // the whole to watch. Solved on the symmetric factors, or by LU where that does not converge
 };
 
 // Nodes of a body's surface against one obstacle: they do not enter it, it does not pull, and friction holds

@@ -36,8 +36,8 @@ Matrix change(Eigen::Index n, Eigen::Index rank) {
   Matrix u(n, rank), v(n, rank);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index k = 0; k < rank; ++k) {
-      u(i, k) = std::sin(static_cast<double>(3 * i + 7 * k + 1));
-      v(i, k) = std::cos(static_cast<double>(5 * i - 2 * k));
+      u(i, k) = std::sin(static_cast<double>((3 + k) * i + 1));
+      v(i, k) = std::cos(static_cast<double>((5 + k) * i));
     }
   }
   return u * v.transpose();
