@@ -36,7 +36,9 @@ void add_meshes(std::vector<Cell>& out, const Problem& p, bool quick) {
     for (std::size_t level = 0; level < levels(p, f, quick); ++level) {
       out.push_back(cell_of(p, f, level, "mesh"));
       // Small, and converging to one answer: a one-field Tet10 needs hundreds of iterations here.
-      out.back().guarded = level == 0 && (p.name == "cantilever" || p.name == "cook") && f.name != "tet10";
+      // Locking Hex8 wander through wrong inertias, with rounding deciding how many.
+      out.back().guarded =
+          level == 0 && (p.name == "cantilever" || p.name == "cook") && f.name != "tet10" && f.name != "hex8";
     }
   }
 }
