@@ -304,12 +304,12 @@ SaddleReport World::Impl::solve_increment(SaddleProblem& problem, const Allowanc
     if (!other.solver) continue;
     std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
     std::copy(state.x.begin(), state.x.end(), x_trial.begin());
-    SaddleReport third = solve_by(*other.solver, problem, saddle);
-    if (third.status == SaddleStatus::converged && count_passing(problem.increment, false) > 0) {
-      third.status = SaddleStatus::passed_through;
+    SaddleReport next = solve_by(*other.solver, problem, saddle);
+    if (next.status == SaddleStatus::converged && count_passing(problem.increment, false) > 0) {
+      next.status = SaddleStatus::passed_through;
     }
-    third.add_work(report);
-    report = std::move(third);
+    next.add_work(report);
+    report = std::move(next);
   }
   return report;
 }
@@ -327,7 +327,7 @@ SaddleReport World::Impl::solve_by(SaddlePoint& other, SaddleProblem& problem, c
   if (report.status != SaddleStatus::converged) return report;
   SaddleReport last = newton->solve(problem, saddle, x_trial, lambda_trial);
   last.add_work(report);
-  last.stood_in = 1;
+  if (last.status == SaddleStatus::converged) last.stood_in = 1;
   return last;
 }
 
