@@ -10,6 +10,14 @@ namespace {
 
 constexpr int most_failed_ventures = 3;
 constexpr int most_returns = 4;
+// Less of a reduction by a correction, and a new factorization is the better buy.
+constexpr double worthwhile = 0.3;
+
+// Whether a correction was worth it, from the residuals before and after.
+bool pays(double force, double row, const SaddleReport& after, const SaddleOptions& options) {
+  return after.force_residual <= std::max(worthwhile * force, options.force_tolerance) &&
+         after.row_residual <= std::max(worthwhile * row, options.row_tolerance);
+}
 
 // Where the parabola through the start, its slope and one value has its minimum.
 double parabola_minimum(double tau, double start, double slope, double value) {
@@ -414,9 +422,6 @@ void Newton::try_coupled(const SaddleProblem& p, double tau, std::span<const Vec
   assemble_residual(p, x_trial_, lambda_trial_);
 }
 
-// Less of a reduction by a correction, and a new factorization is the better buy.
-static constexpr double worthwhile = 0.3;
-
 // Corrections are tried from here on.
 bool Newton::close_enough(const SaddleReport& report) {
   return report.force_residual <= 1e-2 && report.row_residual <= 1e-2;
@@ -445,9 +450,7 @@ bool Newton::correct_coupled(const SaddleProblem& p, const SaddleOptions& option
     if (!std::isfinite(assembly_.energy())) return false;
     ++report.corrections;
     const bool done = balanced(p, options, x_trial_, lambda_trial_, report);
-    const bool pays = report.force_residual <= std::max(worthwhile * force, options.force_tolerance) &&
-                      report.row_residual <= std::max(worthwhile * row, options.row_tolerance);
-    if (!pays) return false;
+    if (!pays(force, row, report, options)) return false;
     std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
     std::copy(lambda_trial_.begin(), lambda_trial_.end(), lambda.begin());
     if (done) return true;
@@ -488,9 +491,7 @@ bool Newton::correct(const SaddleProblem& p, const SaddleOptions& options, std::
     if (!std::isfinite(try_step(p, 1, x, lambda, report))) return false;
     ++report.corrections;
     const bool done = balanced(p, options, x_trial_, lambda_trial_, report);
-    const bool pays = report.force_residual <= std::max(worthwhile * force, options.force_tolerance) &&
-                      report.row_residual <= std::max(worthwhile * row, options.row_tolerance);
-    if (!pays) return false;
+    if (!pays(force, row, report, options)) return false;
     std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
     keep_multipliers(p, x, lambda);
     if (done && !lags) return true;
