@@ -168,7 +168,7 @@ int main(int argc, char** argv) {
     if (std::strcmp(argv[i], "--divisions") == 0) divisions = std::max(1, std::atoi(argv[i + 1]));
   }
   const double length = 10;
-  const Tets slender = beam(divisions, length), stubby = beam(divisions + 1, 2);
+  const Tets slender = beam(divisions, length), stout = beam(divisions + 1, 2);
   // E = 3 mu, unit weight, I = 1/12, shear area 5/6: q L^4 / 8EI + q L^2 / 2GA.
   const double beam_theory =
       -(std::pow(length, 4) / (8 * 3 * kMu / 12) + length * length / (2 * kMu * 5 / 6));
@@ -176,13 +176,13 @@ int main(int argc, char** argv) {
               4 * slender.mesh.node_count());
   std::printf("%-16s %10s %14s %14s %16s\n", "smoothing", "tip", "non-zeros of K", "least energy",
               "spurious modes");
-  const Matrix plain = stiffness(stubby, 4);
+  const Matrix plain = stiffness(stout, 4);
   for (const auto& [name, part] : {std::pair("none", 4), {"faces", 3}, {"edges", 2}, {"nodes", 1}}) {
     const Matrix K = stiffness(slender, part);
     const auto blocks = (K.array() != 0).count();
     double least = 0;
     int vanishing = 0;
-    spectrum(stiffness(stubby, part), plain, least, vanishing);
+    spectrum(stiffness(stout, part), plain, least, vanishing);
     std::printf("%-16s %+9.1f%% %14ld %14.3f %16d\n", name, 100 * (tip(slender, K, length) / beam_theory - 1),
                 static_cast<long>(blocks), least, vanishing);
   }

@@ -14,7 +14,7 @@ target_compile_options(isochor_options INTERFACE
   # build, not per thread count.
   $<$<BOOL:${ISOCHOR_NATIVE}>:-march=native>)
 
-# Code around the engine, which runs once a scene: half of its compilation was optimization that nobody would notice.
+# Code around the engine, which runs once a scene: the time that compilers spend on optimizing it is not earned back.
 # Not for files that use Eigen's dense algebra: their templates would take the place of the engine's when linked.
 function(isochor_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
