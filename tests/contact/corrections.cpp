@@ -1,22 +1,11 @@
 // Corrections on factors at hand, for matrices that differ from what was factored where bodies touch.
 #include <cmath>
 
-#include "engine/unsymmetric_newton.h"
-#include "isochor/contact.h"
-#include "support/compiled.h"
-#include "support/worlds.h"
+#include "support/contact_scenes.h"
 
 namespace {
 
 using namespace isochor;
-
-Mesh block(const Vec3& lower, const Vec3& upper, std::array<int, 3> cells) {
-  BoxMeshDef def;
-  def.lower = lower;
-  def.upper = upper;
-  def.divisions = cells;
-  return test::value(box_mesh(def));
-}
 
 struct Outcome {
   SaddleReport report;
@@ -26,32 +15,10 @@ struct Outcome {
 
 // A ball pressed into a block of rubber and dragged, in one increment of statics.
 Outcome pressed(double compliance, double friction, FrictionCoupling coupling, bool corrections) {
-  BodyDef def;
-  def.mesh = block({-0.1, -0.1, 0}, {0.1, 0.1, 0.1}, {5, 5, 3});
-  def.materials = {{"", test::neo_hookean(1e5, 0.5), 1000}};
-  DirichletDef clamp;
-  clamp.where.surfaces = {"z0"};
-  ContactDef tool;
-  tool.surfaces = {"z1"};
-  tool.compliance = compliance;
-  tool.friction = friction;
-  tool.coupling = coupling;
-  tool.obstacle.shape = ObstacleShape::sphere;
-  tool.obstacle.radius = 0.12;
-  tool.obstacle.position = {0.003, 0.002, 0.22};
-  tool.obstacle.motion.keys = {{0, {0, 0, 0}, {1, 0, 0, 0}}, {1, {0.012, 0, -0.01}, {1, 0, 0, 0}}};
-  const test::Compiled scene = test::compile({def}, {volume({}), dirichlet(clamp), contact(tool)}, true);
-  INFO(scene.error);
-  REQUIRE(scene.system);
+  const test::Compiled scene = test::rubber_under_ball(compliance, friction, coupling);
   const System& s = *scene.system;
   const TbbParallel parallel(1);
-  std::unique_ptr<SaddlePoint> newton;
-  if (s.couples())
-    newton =
-        std::make_unique<UnsymmetricNewton>(scene.system, parallel, make_linear_solver(SolverKind::automatic),
-                                            make_unsymmetric_solver(SolverKind::automatic));
-  else
-    newton = std::make_unique<Newton>(scene.system, parallel, make_linear_solver(SolverKind::automatic));
+  const auto newton = test::newton_of(scene, parallel);
   test::ProblemData data(s);
   data.at_time(s, 1);
   Outcome out;
@@ -109,7 +76,7 @@ TEST_CASE("a slab that slides on a floor takes one factorization a step, and two
     WorldOptions options = test::dynamic_options();
     options.gravity = {0, 0, -9.81};
     World world = test::make_world(options);
-    const BodyId body = test::add_body(world, block({0, 0, 0}, {0.15, 0.15, 0.02}, {12, 12, 2}),
+    const BodyId body = test::add_body(world, test::block({0, 0, 0}, {0.15, 0.15, 0.02}, {12, 12, 2}),
                                        Element::tet4, test::neo_hookean(1e5, 0.5));
     test::add_volume(world, body);
     DirichletDef top;

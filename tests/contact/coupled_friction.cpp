@@ -2,10 +2,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "engine/unsymmetric_newton.h"
-#include "isochor/contact.h"
-#include "support/compiled.h"
-#include "support/worlds.h"
+#include "support/contact_scenes.h"
 
 namespace {
 
@@ -43,14 +40,6 @@ WorldOptions precise(WorldOptions options) {
   return options;
 }
 
-Mesh block(const Vec3& lower, const Vec3& upper, std::array<int, 3> cells) {
-  BoxMeshDef def;
-  def.lower = lower;
-  def.upper = upper;
-  def.divisions = cells;
-  return test::value(box_mesh(def));
-}
-
 // A block on a slope of 30 degrees, on a floor that is hard or soft.
 Run incline(double friction, double compliance, FrictionCoupling coupling, int threads = 1,
             Solver solver = Solver::automatic) {
@@ -59,7 +48,7 @@ Run incline(double friction, double compliance, FrictionCoupling coupling, int t
   options.threads = threads;
   options.solver = solver;
   Run r{test::make_world(options), {}};
-  const BodyId body = test::add_body(r.world, block({-0.1, -0.05, 0}, {0.1, 0.05, 0.04}, {6, 3, 2}),
+  const BodyId body = test::add_body(r.world, test::block({-0.1, -0.05, 0}, {0.1, 0.05, 0.04}, {6, 3, 2}),
                                      Element::tet4_edge_smoothed, test::neo_hookean(1e5, 0.49));
   r.bodies.push_back(body);
   test::add_volume(r.world, body);
@@ -76,7 +65,7 @@ Run incline(double friction, double compliance, FrictionCoupling coupling, int t
 // A block of rubber, squeezed between a rough floor and a rough ball that goes down and sideways.
 Run pressed(FrictionCoupling coupling, double poisson = 0.5) {
   Run r{test::make_world(precise(test::static_options())), {}};
-  const BodyId body = test::add_body(r.world, block({-0.1, -0.1, 0}, {0.1, 0.1, 0.1}, {5, 5, 3}),
+  const BodyId body = test::add_body(r.world, test::block({-0.1, -0.1, 0}, {0.1, 0.1, 0.1}, {5, 5, 3}),
                                      Element::tet4_edge_smoothed, test::neo_hookean(1e5, poisson));
   r.bodies.push_back(body);
   test::add_volume(r.world, body);
@@ -98,10 +87,10 @@ Run pressed(FrictionCoupling coupling, double poisson = 0.5) {
 Run sheared(FrictionCoupling coupling) {
   Run r{test::make_world(precise(test::static_options())), {}};
   const auto material = test::neo_hookean(1e5, 0.3);
-  const BodyId low = test::add_body(r.world, block({0, 0, 0}, {1, 1, 0.5}, {3, 3, 2}), Element::tet4,
+  const BodyId low = test::add_body(r.world, test::block({0, 0, 0}, {1, 1, 0.5}, {3, 3, 2}), Element::tet4,
                                     material, 1000, "lower");
-  const BodyId high = test::add_body(r.world, block({0.1, 0.1, 0.5}, {0.9, 0.9, 1}, {4, 4, 2}), Element::tet4,
-                                     material, 1000, "upper");
+  const BodyId high = test::add_body(r.world, test::block({0.1, 0.1, 0.5}, {0.9, 0.9, 1}, {4, 4, 2}),
+                                     Element::tet4, material, 1000, "upper");
   r.bodies = {low, high};
   test::hold(r.world, low, {"z0"});
   test::hold(r.world, high, {"z1"}, {}, {0.05, 0, -0.05});
@@ -170,7 +159,7 @@ TEST_CASE("coupled friction rolls a rigid ball as lagged friction does") {
     options.gravity = {2, 0, -9};
     runs.push_back({test::make_world(options), {}});
     Run& r = runs.back();
-    r.bodies.push_back(test::add_body(r.world, block({-0.3, -0.1, -0.1}, {0.3, 0.1, 0}, {8, 3, 2}),
+    r.bodies.push_back(test::add_body(r.world, test::block({-0.3, -0.1, -0.1}, {0.3, 0.1, 0}, {8, 3, 2}),
                                       Element::tet4, test::neo_hookean(1e5, 0.4)));
     test::hold(r.world, r.bodies[0], {"z0"});
     RigidBodyDef ball;
@@ -198,32 +187,11 @@ TEST_CASE("coupled friction rolls a rigid ball as lagged friction does") {
 // The last step of a slow path: residuals of Newton's iterations, each with factors of its own.
 TEST_CASE("Newton's method with coupled friction ends quadratically, with lagged friction it does not") {
   for (const FrictionCoupling coupling : kBoth) {
-    BodyDef def;
-    def.mesh = block({-0.1, -0.1, 0}, {0.1, 0.1, 0.1}, {5, 5, 3});
-    def.materials = {{"", test::neo_hookean(1e5, 0.5), 1000}};
-    DirichletDef clamp;
-    clamp.where.surfaces = {"z0"};
-    ContactDef tool;
-    tool.surfaces = {"z1"};
-    tool.friction = 0.5;
-    tool.coupling = coupling;
-    tool.obstacle.shape = ObstacleShape::sphere;
-    tool.obstacle.radius = 0.12;
-    tool.obstacle.position = {0.003, 0.002, 0.22};
-    tool.obstacle.motion.keys = {{0, {0, 0, 0}, {1, 0, 0, 0}}, {1, {0.012, 0, -0.01}, {1, 0, 0, 0}}};
-    const test::Compiled scene = test::compile({def}, {volume({}), dirichlet(clamp), contact(tool)}, true);
-    INFO(scene.error);
-    REQUIRE(scene.system);
+    const test::Compiled scene = test::rubber_under_ball(0, 0.5, coupling);
     const System& s = *scene.system;
     CHECK(s.couples() == (coupling == FrictionCoupling::coupled));
     const TbbParallel parallel(1);
-    std::unique_ptr<SaddlePoint> newton;
-    if (s.couples())
-      newton = std::make_unique<UnsymmetricNewton>(scene.system, parallel,
-                                                   make_linear_solver(SolverKind::automatic),
-                                                   make_unsymmetric_solver(SolverKind::automatic));
-    else
-      newton = std::make_unique<Newton>(scene.system, parallel, make_linear_solver(SolverKind::automatic));
+    const auto newton = test::newton_of(scene, parallel);
     test::ProblemData data(s);
     data.at_time(s, 1);
     std::vector<Vec3> x = s.parts().rest;
@@ -303,7 +271,7 @@ TEST_CASE("what cannot take coupled friction says why") {
     WorldOptions options = test::dynamic_options();
     change(options);
     World world = test::make_world(options);
-    const BodyId body = test::add_body(world, block({0, 0, 0}, {1, 1, 1}, {1, 1, 1}), Element::tet4,
+    const BodyId body = test::add_body(world, test::block({0, 0, 0}, {1, 1, 1}, {1, 1, 1}), Element::tet4,
                                        test::neo_hookean(1e5, 0.3));
     test::hold(world, body, {"z0"});
     ContactDef touch;

@@ -17,14 +17,6 @@ double gauge_of(const World& world, const std::string& effect, const std::string
   return 0;
 }
 
-Mesh block(const Vec3& lower, const Vec3& upper, std::array<int, 3> cells) {
-  BoxMeshDef def;
-  def.lower = lower;
-  def.upper = upper;
-  def.divisions = cells;
-  return test::value(box_mesh(def));
-}
-
 // A rigid ball above a floor, beside a small soft body, which a scene needs.
 World ball_above(double height, double restitution, SchemePtr scheme, double friction = 0,
                  const Vec3& gravity = {0, 0, -9.81}) {
@@ -32,7 +24,7 @@ World ball_above(double height, double restitution, SchemePtr scheme, double fri
   options.scheme = std::move(scheme);
   options.gravity = gravity;
   World world = test::make_world(options);
-  const BodyId body = test::add_body(world, block({2, 0, 0}, {2.1, 0.1, 0.1}, {1, 1, 1}), Element::tet4,
+  const BodyId body = test::add_body(world, test::block({2, 0, 0}, {2.1, 0.1, 0.1}, {1, 1, 1}), Element::tet4,
                                      test::neo_hookean(5e4, 0.3));
   test::hold(world, body, {"z0"});
   RigidBodyDef ball;
@@ -101,7 +93,7 @@ World box_above(double height, const Vec3& axis, double restitution, double fric
   WorldOptions options = test::dynamic_options();
   options.gravity = gravity;
   World world = test::make_world(options);
-  const BodyId body = test::add_body(world, block({2, 0, 0}, {2.1, 0.1, 0.1}, {1, 1, 1}), Element::tet4,
+  const BodyId body = test::add_body(world, test::block({2, 0, 0}, {2.1, 0.1, 0.1}, {1, 1, 1}), Element::tet4,
                                      test::neo_hookean(5e4, 0.3));
   test::hold(world, body, {"x0", "x1", "y0", "y1", "z0", "z1"});
   RigidBodyDef box;
@@ -157,7 +149,7 @@ TEST_CASE("what a moving obstacle hits leaves it at its restitution") {
   const double h = 1e-3, e = 0.5, speed = 2;
   WorldOptions options = test::dynamic_options();
   World world = test::make_world(options);
-  const BodyId body = test::add_body(world, block({2, 0, 0}, {2.1, 0.1, 0.1}, {1, 1, 1}), Element::tet4,
+  const BodyId body = test::add_body(world, test::block({2, 0, 0}, {2.1, 0.1, 0.1}, {1, 1, 1}), Element::tet4,
                                      test::neo_hookean(5e4, 0.3));
   test::hold(world, body, {"z0"});
   RigidBodyDef ball;
@@ -181,8 +173,8 @@ TEST_CASE("of a soft body each node bounces by itself, and no energy appears") {
   for (int k = 0; k < 2; ++k) {
     WorldOptions options = test::dynamic_options();
     World world = test::make_world(options);
-    const BodyId body = test::add_body(world, block({0, 0, 0.02}, {0.1, 0.1, 0.12}, {3, 3, 3}), Element::tet4,
-                                       test::neo_hookean(1e5, 0.45));
+    const BodyId body = test::add_body(world, test::block({0, 0, 0.02}, {0.1, 0.1, 0.12}, {3, 3, 3}),
+                                       Element::tet4, test::neo_hookean(1e5, 0.45));
     test::add_volume(world, body);
     ContactDef floor;
     floor.body = body;
@@ -211,7 +203,7 @@ TEST_CASE("restitution that cannot be is refused with the reason") {
     WorldOptions options = test::dynamic_options();
     options.scheme = std::move(scheme);
     World world = test::make_world(options);
-    const BodyId body = test::add_body(world, block({0, 0, 0}, {1, 1, 1}, {1, 1, 1}), Element::tet4,
+    const BodyId body = test::add_body(world, test::block({0, 0, 0}, {1, 1, 1}, {1, 1, 1}), Element::tet4,
                                        test::neo_hookean(1e5, 0.3));
     test::hold(world, body, {"z1"});
     ContactDef floor;

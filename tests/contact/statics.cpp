@@ -89,15 +89,6 @@ TEST_CASE("Hertz: force and contact radius over approach, sphere on a half-space
 
 namespace {
 
-Mesh block(const Vec3& lower, const Vec3& upper, std::array<int, 3> cells, CellType type) {
-  BoxMeshDef def;
-  def.lower = lower;
-  def.upper = upper;
-  def.divisions = cells;
-  def.cell_type = type;
-  return test::value(box_mesh(def));
-}
-
 EffectId add_floor(World& world, BodyId body, double z = 0, std::vector<std::string> surfaces = {}) {
   ContactDef def;
   def.name = "floor";
@@ -138,9 +129,9 @@ TEST_CASE("a flat face pressed on a plane has a uniform pressure, whatever the m
     const auto skew = [](const Vec3& p) {  // uneven faces, flat sides
       return Vec3{p.x + 0.12 * p.x * (1 - p.x), p.y + 0.2 * p.y * (1 - p.y), p.z};
     };
-    const BodyId body =
-        test::add_body(world, test::mapped(block({0, 0, 0}, {1, 1, 0.5}, {5, 4, 3}, cells(element)), skew),
-                       element, test::neo_hookean(1e4, 0.3));
+    const BodyId body = test::add_body(
+        world, test::mapped(test::block({0, 0, 0}, {1, 1, 0.5}, {5, 4, 3}, cells(element)), skew), element,
+        test::neo_hookean(1e4, 0.3));
     test::add_volume(world, body);
     test::hold(world, body, {"x0"}, {{1, 0, 0}});
     test::hold(world, body, {"y0"}, {{0, 1, 0}});
@@ -163,8 +154,9 @@ TEST_CASE("a block rests at exactly zero gap, on one plane and on two boxes that
       WorldOptions options = test::static_options();
       options.gravity = {0, 0, -9.81};
       World world = test::make_world(options);
-      const BodyId body = test::add_body(world, block({0, 0, 0}, {0.2, 0.1, 0.1}, {4, 2, 2}, cells(element)),
-                                         element, test::neo_hookean(20e3, 0.49));
+      const BodyId body =
+          test::add_body(world, test::block({0, 0, 0}, {0.2, 0.1, 0.1}, {4, 2, 2}, cells(element)), element,
+                         test::neo_hookean(20e3, 0.49));
       test::add_volume(world, body);
       test::hold(world, body, {"x0"}, {{1, 0, 0}});
       test::hold(world, body, {"y0"}, {{0, 1, 0}});
@@ -197,7 +189,7 @@ TEST_CASE("a compliant layer is pressed in by compliance times pressure, whateve
   double depth[2];
   for (const int n : {2, 5}) {
     World world = test::make_world(test::static_options());
-    const BodyId body = test::add_body(world, block({0, 0, 0}, {1, 1, 0.5}, {n, n, 2}, CellType::hex8),
+    const BodyId body = test::add_body(world, test::block({0, 0, 0}, {1, 1, 0.5}, {n, n, 2}, CellType::hex8),
                                        Element::hex8, test::neo_hookean(1e4, 0.3));
     test::hold(world, body, {"x0"}, {{1, 0, 0}});
     test::hold(world, body, {"y0"}, {{0, 1, 0}});
@@ -221,7 +213,7 @@ TEST_CASE("a compliant layer is pressed in by compliance times pressure, whateve
 
 TEST_CASE("contact does not pull, and lets a hanging block lift off") {
   World world = test::make_world(test::static_options());
-  const BodyId body = test::add_body(world, block({0, 0, 0}, {1, 1, 1}, {3, 3, 3}, CellType::tet4),
+  const BodyId body = test::add_body(world, test::block({0, 0, 0}, {1, 1, 1}, {3, 3, 3}, CellType::tet4),
                                      Element::tet4_edge_smoothed, test::neo_hookean(1e4, 0.5));
   test::add_volume(world, body);
   // Pressed down, then lifted.
@@ -240,7 +232,7 @@ TEST_CASE("contact does not pull, and lets a hanging block lift off") {
 TEST_CASE("nodes inside an obstacle at the start are reported, or pushed out little by little") {
   for (const auto choice : {InitialOverlap::report, InitialOverlap::resolve}) {
     World world = test::make_world(test::static_options());
-    const BodyId body = test::add_body(world, block({0, 0, 0}, {1, 1, 1}, {2, 2, 2}, CellType::tet4),
+    const BodyId body = test::add_body(world, test::block({0, 0, 0}, {1, 1, 1}, {2, 2, 2}, CellType::tet4),
                                        Element::tet4_edge_smoothed, test::neo_hookean(1e4, 0.4));
     test::hold(world, body, {"z1"});
     ContactDef def;

@@ -16,15 +16,6 @@ double gauge_of(const World& world, const std::string& quantity) {
   return 0;
 }
 
-Mesh block(const Vec3& lower, const Vec3& upper, std::array<int, 3> cells, CellType type = CellType::tet4) {
-  BoxMeshDef def;
-  def.lower = lower;
-  def.upper = upper;
-  def.divisions = cells;
-  def.cell_type = type;
-  return test::value(box_mesh(def));
-}
-
 EffectId touch(World& world, BodyId body, BodyId against, double friction = 0,
                std::vector<std::string> surfaces = {}, std::vector<std::string> against_surfaces = {}) {
   SurfaceContactDef def;
@@ -45,8 +36,8 @@ Stack pressed_stack(Element element, double poisson, double shortening, bool swa
   Stack s{test::make_world(test::static_options()), {}, {}};
   const CellType type = test::cells_for(element);
   const auto material = test::neo_hookean(1e5, poisson);
-  const Mesh low = block({0, 0, 0}, {1, 1, 0.5}, {4, 4, 2}, type);
-  const Mesh high = block({0, 0, 0.5}, {1, 1, 1}, {5, 5, 2}, type);
+  const Mesh low = test::block({0, 0, 0}, {1, 1, 0.5}, {4, 4, 2}, type);
+  const Mesh high = test::block({0, 0, 0.5}, {1, 1, 1}, {5, 5, 2}, type);
   if (swapped) s.upper = test::add_body(s.world, high, element, material, 1000, "upper");
   s.lower = test::add_body(s.world, low, element, material, 1000, "lower");
   if (!swapped) s.upper = test::add_body(s.world, high, element, material, 1000, "upper");
@@ -129,9 +120,9 @@ Impact impact(double speed, double tilt, int threads = 1, double density = 1000)
   options.threads = threads;
   Impact s{test::make_world(options), {}, {}};
   const auto material = test::neo_hookean(5e4, 0.5);
-  const Mesh a = block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}, {3, 3, 3});
+  const Mesh a = test::block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}, {3, 3, 3});
   const Mesh b =
-      test::mapped(block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}, {4, 4, 4}), [&](const Vec3& p) {
+      test::mapped(test::block({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}, {4, 4, 4}), [&](const Vec3& p) {
         const double c = std::cos(tilt), n = std::sin(tilt);
         const Vec3 q{c * p.x + n * p.z, p.y, -n * p.x + c * p.z};
         return Vec3{q.x + 0.013, c * q.y + n * q.z + 0.008, -n * q.y + c * q.z + 0.14};
@@ -195,9 +186,9 @@ TEST_CASE("bodies that collide keep momentum and volume, gain no energy, and nev
 TEST_CASE("a thin sheet stops what flies a hundred elements a step") {
   World world = test::make_world(test::dynamic_options());
   const auto material = test::neo_hookean(5e4, 0.5);
-  const Mesh plate = block({-0.2, -0.2, -0.01}, {0.2, 0.2, 0.01}, {8, 8, 1});
+  const Mesh plate = test::block({-0.2, -0.2, -0.01}, {0.2, 0.2, 0.01}, {8, 8, 1});
   const BodyId sheet = test::add_body(world, plate, Element::tet4_edge_smoothed, material, 1000, "sheet");
-  const Mesh cube = block({-0.05, -0.05, 0.1}, {0.05, 0.05, 0.2}, {3, 3, 3});
+  const Mesh cube = test::block({-0.05, -0.05, 0.1}, {0.05, 0.05, 0.2}, {3, 3, 3});
   const BodyId body = test::add_body(world, cube, Element::tet4_edge_smoothed, material, 1, "cube");
   for (const BodyId b : {sheet, body}) test::add_volume(world, b);
   test::hold(world, sheet, {"x0", "x1", "y0", "y1"});
@@ -237,7 +228,7 @@ namespace {
 
 // Two arms of one body, fixed at their root, with a slit between them; z0 and z1 are their outer sides.
 Mesh tuning_fork() {
-  Mesh all = block({0, 0, -0.1}, {1, 0.2, 0.1}, {15, 3, 6});
+  Mesh all = test::block({0, 0, -0.1}, {1, 0.2, 0.1}, {15, 3, 6});
   // The slit: where it is, cells above z = 0 get nodes of their own, a little higher.
   std::vector<Index> twin(all.nodes.size(), -1);
   const std::size_t count = all.nodes.size();
@@ -316,10 +307,10 @@ Slide slide(double slope_degrees, double mu, double duration) {
   options.gravity = {g * std::sin(slope), 0, -g * std::cos(slope)};
   World world = test::make_world(options);
   const auto material = test::neo_hookean(2e5, 0.45);
-  const BodyId slab = test::add_body(world, block({0, 0, -0.1}, {1.2, 0.4, 0}, {9, 3, 1}), Element::tet4,
-                                     material, 1000, "slab");
-  const BodyId body = test::add_body(world, block({0.1, 0.1, 0}, {0.3, 0.3, 0.1}, {3, 3, 2}), Element::tet4,
-                                     material, 1000, "block");
+  const BodyId slab = test::add_body(world, test::block({0, 0, -0.1}, {1.2, 0.4, 0}, {9, 3, 1}),
+                                     Element::tet4, material, 1000, "slab");
+  const BodyId body = test::add_body(world, test::block({0.1, 0.1, 0}, {0.3, 0.3, 0.1}, {3, 3, 2}),
+                                     Element::tet4, material, 1000, "block");
   test::hold(world, slab, {"z0"});
   touch(world, body, slab, mu, {"z0"}, {"z1"});
   const double h = 5e-3;
@@ -359,16 +350,9 @@ TEST_CASE("a solve that is stuck where what is nearest changes looks around agai
       state = state * 1664525u + 1013904223u;
       return static_cast<double>(state >> 8) / double{1 << 24} - 0.5;
     };
-    const auto block = [](const Vec3& lower, const Vec3& upper, std::array<int, 3> cells) {
-      BoxMeshDef def;
-      def.lower = lower;
-      def.upper = upper;
-      def.divisions = cells;
-      return test::value(box_mesh(def));
-    };
     constexpr double bump = 0.2;
-    Mesh low = block({0, 0, 0}, {1, 1, 0.5}, {3, 3, 2}),
-         high = block({0.2, 0.2, 0.5}, {0.8, 0.8, 1}, {3, 3, 2});
+    Mesh low = test::block({0, 0, 0}, {1, 1, 0.5}, {3, 3, 2}),
+         high = test::block({0.2, 0.2, 0.5}, {0.8, 0.8, 1}, {3, 3, 2});
     for (Vec3& x : low.nodes) {
       if (x.z > 0.49) x.z += bump * (random() - 0.5);
     }
@@ -397,10 +381,10 @@ TEST_CASE("surface contact refuses what has no sense, with a remedy") {
   const auto error_of = [](auto change, double overlap = 0.0) {
     World world = test::make_world(test::static_options());
     const auto material = test::neo_hookean(1e5, 0.3);
-    const BodyId a =
-        test::add_body(world, block({0, 0, 0}, {1, 1, 1}, {2, 2, 2}), Element::tet4, material, 1000, "a");
-    const BodyId b = test::add_body(world, block({0, 0, 1 - overlap}, {1, 1, 2}, {3, 3, 2}), Element::tet4,
-                                    material, 1000, "b");
+    const BodyId a = test::add_body(world, test::block({0, 0, 0}, {1, 1, 1}, {2, 2, 2}), Element::tet4,
+                                    material, 1000, "a");
+    const BodyId b = test::add_body(world, test::block({0, 0, 1 - overlap}, {1, 1, 2}, {3, 3, 2}),
+                                    Element::tet4, material, 1000, "b");
     test::hold(world, a, {"z0"});
     test::hold(world, b, {"z1"});
     SurfaceContactDef def;
@@ -436,9 +420,9 @@ TEST_CASE("an overlap at the start is pushed apart little by little") {
   World world = test::make_world(test::static_options());
   const auto material = test::neo_hookean(1e5, 0.45);
   const BodyId a =
-      test::add_body(world, block({0, 0, 0}, {1, 1, 1}, {3, 3, 3}), Element::tet4, material, 1000, "a");
-  const BodyId b = test::add_body(world, block({0.1, 0.2, 0.9}, {0.8, 0.9, 1.9}, {3, 3, 3}), Element::tet4,
-                                  material, 1000, "b");
+      test::add_body(world, test::block({0, 0, 0}, {1, 1, 1}, {3, 3, 3}), Element::tet4, material, 1000, "a");
+  const BodyId b = test::add_body(world, test::block({0.1, 0.2, 0.9}, {0.8, 0.9, 1.9}, {3, 3, 3}),
+                                  Element::tet4, material, 1000, "b");
   test::hold(world, a, {"z0"});
   test::hold(world, b, {"z1"});
   SurfaceContactDef def;

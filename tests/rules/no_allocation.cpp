@@ -1,9 +1,8 @@
 // Rule: no allocation in a warm step, outside the third-party solver.
 #include "catch.h"
-#include "isochor/contact.h"
 #include "rules/instruments.h"
 #include "support/allocations.h"
-#include "support/worlds.h"
+#include "support/contact_scenes.h"
 
 using namespace isochor;
 using namespace test;
@@ -29,22 +28,9 @@ TEST_CASE("a warm solve with friction allocates nothing, its corrections include
   if (!allocations_are_counted()) return;
   for (const double compliance : {0.0, 1e-7}) {
     INFO("compliance " << compliance);
-    BodyDef def;
-    def.mesh = box({3, 3, 2}, {0.2, 0.2, 0.1});
-    def.materials = {{"", neo_hookean(1e5, 0.4), 1000}};
-    DirichletDef clamp;
-    clamp.where.surfaces = {"z0"};
-    ContactDef tool;
-    tool.surfaces = {"z1"};
-    tool.friction = 0.5;
+    ContactDef tool = dragging_ball({0.103, 0.102, 0.22}, 0.04, 0.5);
     tool.compliance = compliance;
-    tool.obstacle.shape = ObstacleShape::sphere;
-    tool.obstacle.radius = 0.12;
-    tool.obstacle.position = {0.103, 0.102, 0.22};
-    tool.obstacle.motion.keys = {{0, {0, 0, 0}, {1, 0, 0, 0}}, {1, {0.012, 0, -0.04}, {1, 0, 0, 0}}};
-    const Compiled scene = compile({def}, {volume({}), dirichlet(clamp), contact(tool)}, true);
-    INFO(scene.error);
-    REQUIRE(scene.system);
+    const Compiled scene = rubber_under(tool, box({3, 3, 2}, {0.2, 0.2, 0.1}), 0.4);
     const System& s = *scene.system;
     const TbbParallel parallel(1);
     Newton newton(scene.system, parallel, std::make_unique<DenseSolver>());

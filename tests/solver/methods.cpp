@@ -41,15 +41,9 @@ Outcome bend(Method method, Element element, double poisson, VolumeSpace space, 
   options.gravity = {0, 0, gravity};
   options.method = method;
   World world = test::make_world(options);
-  BoxMeshDef def;
-  def.upper = {0.4, 0.1, 0.1};
-  def.divisions = {8, 2, 2};
-  const BodyId body =
-      test::add_body(world, test::value(box_mesh(def)), element, test::neo_hookean(30e3, poisson));
-  VolumeDef rows;
-  rows.body = body;
-  rows.space = space;
-  test::value(world.add(volume(rows)));
+  const BodyId body = test::add_body(world, test::block({}, {0.4, 0.1, 0.1}, {8, 2, 2}), element,
+                                     test::neo_hookean(30e3, poisson));
+  test::add_volume(world, body, space);
   test::hold(world, body, {"x0"});
   if (!dynamic) return finish(world, body);
   Outcome out;
@@ -109,21 +103,11 @@ TEST_CASE("an increment that a dual method cannot solve is left to a stronger on
     WorldOptions options = test::static_options();
     options.method = method;
     World world = test::make_world(options);
-    BoxMeshDef def;
-    def.upper = {0.1, 0.1, 0.1};
-    def.divisions = {4, 4, 4};
-    const BodyId body =
-        test::add_body(world, test::value(box_mesh(def)), Element::tet4, test::neo_hookean(66e3, 0.5));
-    VolumeDef rows;
-    rows.body = body;
-    test::value(world.add(volume(rows)));
+    const BodyId body = test::add_body(world, test::block({}, {0.1, 0.1, 0.1}, {4, 4, 4}), Element::tet4,
+                                       test::neo_hookean(66e3, 0.5));
+    test::add_volume(world, body);
     test::hold(world, body, {"x0"});
-    DirichletDef end;
-    end.name = "press";
-    end.where.body = body;
-    end.where.surfaces = {"x1"};
-    end.displacement = {-0.08, 0, 0};
-    test::value(world.add(dirichlet(end)));
+    test::hold(world, body, {"x1"}, {}, {-0.08, 0, 0});
     return finish(world, body);
   };
   const Outcome reference = press(Method::saddle_point);

@@ -28,6 +28,16 @@ inline isochor::MaterialPtr neo_hookean(double young, double poisson,
   return value(isochor::neo_hookean(c));
 }
 
+inline Mesh block(const Vec3& lower, const Vec3& upper, std::array<int, 3> cells,
+                  isochor::CellType type = isochor::CellType::tet4) {
+  isochor::BoxMeshDef def;
+  def.lower = lower;
+  def.upper = upper;
+  def.divisions = cells;
+  def.cell_type = type;
+  return value(isochor::box_mesh(def));
+}
+
 inline isochor::WorldOptions static_options() {
   isochor::WorldOptions options;
   options.scheme = isochor::statics();
