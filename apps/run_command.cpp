@@ -43,7 +43,7 @@ class Progress {
                 "volume err", "min J", "elapsed", "ETA");
   }
   void line(const StepRecord& r, int steps) {
-    if (r.rejected > 0) note_rejected(r);
+    if (r.rejected > 0 || r.stand_ins > 0) note_trouble(r);
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const double eta = r.step > 0 ? elapsed / r.step * (steps - r.step) : 0;
     const std::string step = std::to_string(r.step) + "/" + std::to_string(steps);
@@ -54,8 +54,10 @@ class Progress {
   }
 
  private:
-  static void note_rejected(const StepRecord& r) {
-    std::printf("       (%d increments, %d tried again shorter)\n", r.substeps, r.rejected);
+  static void note_trouble(const StepRecord& r) {
+    std::printf("       (%d increments, %d tried again shorter", r.substeps, r.rejected);
+    if (r.stand_ins > 0) std::printf(", %d left to another method", r.stand_ins);
+    std::printf(")\n");
   }
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };

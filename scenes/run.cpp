@@ -91,6 +91,7 @@ void Run::record(int step, const StepReport& report) {
   r.iterations = report.iterations;
   r.substeps = report.substeps;
   r.rejected = report.rejected_substeps;
+  r.stand_ins = report.stand_ins;
   r.factorizations = report.factorizations;
   r.force_residual = report.force_residual;
   r.row_residual = report.row_residual;

@@ -24,6 +24,7 @@ struct StepRecord {
   int step = 0;
   double time = 0;  // [s], or load factor
   int iterations = 0, substeps = 0, rejected = 0, factorizations = 0;
+  int stand_ins = 0;  // increments that the method of the scene left to another one
   double force_residual = 0, row_residual = 0, constitutive_residual = 0;
   double volume_error = 0;  // the largest of all bodies
   double min_J = 1, max_J = 1;

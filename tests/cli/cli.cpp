@@ -71,6 +71,25 @@ const char* const kBlock = R"({
 
 }  // namespace
 
+TEST_CASE("a step that another method solved says so") {
+  Shell shell;
+  shell.write("press.json", R"({
+    "bodies": [{"name": "block", "element": "tet4",
+                "mesh": {"box": {"upper": [0.1, 0.1, 0.1], "divisions": [4, 4, 4]}},
+                "materials": [{"young": 66000, "poisson": 0.5}]}],
+    "analysis": {"steps": 1, "method": "dual_gradients"},
+    "dirichlet": [{"name": "held", "where": {"surfaces": "x0"}},
+                  {"name": "press", "where": {"surfaces": "x1"}, "displacement": [-0.08, 0, 0]}]
+  })");
+  const Outcome pressed = shell.run("run press.json --out pressed");
+  INFO(pressed.err);
+  CHECK(pressed.code == 0);
+  CHECK_THAT(pressed.out, Contains("1 left to another method"));
+  CHECK_THAT(slurp(shell.folder() / "pressed/steps.csv"), Contains(",stand_ins,"));
+  shell.write("block.json", kBlock);
+  CHECK_THAT(shell.run("run block.json --out plain").out, !Contains("another method"));
+}
+
 TEST_CASE("help, list and version") {
   Shell shell;
   for (const char* command :
