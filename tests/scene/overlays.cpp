@@ -1,6 +1,8 @@
 // What the results page shows beside the bodies.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <sstream>
 
 #include "catch.h"
 #include "constraints/obstacle_shape.h"
@@ -287,5 +289,22 @@ TEST_CASE("the contact pressure of a run reaches its page") {
   const auto written = page->write(view, path);
   INFO((written ? std::string() : written.error()));
   REQUIRE(written);
-  CHECK(test::slurp(path).find("\"Contact pressure\"") != std::string::npos);
+  const std::string text = test::slurp(path);
+  CHECK(text.find("\"Contact pressure\"") != std::string::npos);
+  // The range of every field in the last frame: the fifth is that of the contact pressure, and the floor
+  // carries.
+  const auto ranges = text.rfind("\"ranges\":");
+  REQUIRE(ranges != std::string::npos);
+  std::string numbers = text.substr(ranges + 10, text.find("]]", ranges) - ranges - 10);
+  std::replace_if(
+      numbers.begin(), numbers.end(), [](char c) { return c == '[' || c == ']' || c == ','; }, ' ');
+  std::istringstream in(numbers);
+  const std::vector<double> bounds{std::istream_iterator<double>(in), {}};
+  INFO(numbers);
+  REQUIRE(bounds.size() >= 15);
+  double largest = 0;
+  for (const double p : world.fields(built.value().bodies[0]).node_contact_pressure)
+    largest = std::max(largest, p);
+  REQUIRE(largest > 0);
+  CHECK(bounds[13] == Approx(largest).epsilon(1e-5));
 }
