@@ -97,7 +97,17 @@ struct Timed {
 Timed run_once(const Cell& cell, int threads, const std::function<bool()>& stop) {
   Timed t;
   std::optional<ScratchFolder> scratch;
-  if (cell.outputs) scratch.emplace();
+  if (cell.outputs) {
+    scratch.emplace();
+    // Without a folder the run would write nothing, and the cell say that writing costs nothing.
+    if (scratch->path().empty()) {
+      t.run.status = RunStatus::failed;
+      t.run.reason = "no folder for outputs could be made in " +
+                     std::filesystem::temp_directory_path().string() +
+                     "; set TMPDIR to one that can be written";
+      return t;
+    }
+  }
   const double wall = wall_now(), cpu = cpu_now();
   if (cell.probe) {
     auto numbers = cell.probe(cell.scene, threads);
