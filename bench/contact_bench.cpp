@@ -50,7 +50,7 @@ struct Kind {
 
 struct Outcome {
   double step = 0, iteration = 0;  // processor time [ms]
-  int iterations = 0, corrections = 0;
+  int iterations = 0, corrections = 0, factorizations = 0;
   std::size_t active = 0;
   StageTimes seconds;
 };
@@ -141,7 +141,6 @@ Outcome run(const Kind& kind, bool quick, int threads) {
   constexpr int steps = 8;
   Outcome out;
   double before = 0;
-  int factorizations = 0;
   for (int k = 0; k < steps + 3; ++k) {
     if (k == 3) before = cpu_milliseconds();  // analysis and the first touch are over
     const StepReport r = world.step(0.01);
@@ -152,7 +151,7 @@ Outcome run(const Kind& kind, bool quick, int threads) {
     if (k < 3) continue;
     out.iterations += r.iterations;
     out.corrections += r.corrections;
-    factorizations += r.factorizations;
+    out.factorizations += r.factorizations;
     out.seconds.analyze += r.seconds.analyze;
     out.seconds.evaluate += r.seconds.evaluate + r.seconds.gather + r.seconds.line_search;
     out.seconds.factor += r.seconds.factor;
@@ -161,7 +160,7 @@ Outcome run(const Kind& kind, bool quick, int threads) {
   }
   const double spent = cpu_milliseconds() - before;
   out.step = spent / steps;
-  out.iteration = spent / std::max(1, factorizations);
+  out.iteration = spent / std::max(1, out.factorizations);
   out.active = count_active(world, kind, body);
   return out;
 }
@@ -190,11 +189,11 @@ void compare(const Case& c, int pairs, bool quick, int threads) {
   std::printf(
       "%-20s %4zu points touch; a step %.0f ms, free %.0f ms: %+.1f %% (pairs %+.1f to %+.1f); a "
       "factorization's worth "
-      "%+.1f %%; iterations %d and %d corrections, free %d and %d\n",
+      "%+.1f %%; %d iterations, %d factorizations, %d corrections, free %d, %d, %d\n",
       c.touching.what, b.active, median(touching), median(free_step), 100 * (median(step) - 1),
       100 * (*std::min_element(step.begin(), step.end()) - 1),
       100 * (*std::max_element(step.begin(), step.end()) - 1), 100 * (median(iteration) - 1), b.iterations,
-      b.corrections, a.iterations, a.corrections);
+      b.factorizations, b.corrections, a.iterations, a.factorizations, a.corrections);
   const auto stages = [](const char* what, const Outcome& o) {
     const auto& t = o.seconds;
     std::printf(

@@ -54,6 +54,9 @@ class Kkt {
   };
   Outcome factor(const Assembly& assembly, const Values& values, StageSeconds& seconds);
 
+  // Hands over its solvers, with the memory they have, before it is destroyed.
+  std::unique_ptr<LinearSolver> release_solver() { return std::move(solver_); }
+  std::unique_ptr<LinearSolver> release_unsymmetric() { return std::move(unsymmetric_solver_); }
   // Who factors unsymmetric matrices.
   void take_unsymmetric(std::unique_ptr<LinearSolver> solver);
 

@@ -16,6 +16,7 @@ namespace isochor {
 
 // Lower triangle (diagonal included) of a symmetric matrix, compressed by columns, rows ascending in each
 // column.
+struct OrderingBase;
 struct SymmetricPattern {
   Index size = 0;
   std::vector<std::int64_t> column_start;  // size + 1
@@ -29,6 +30,8 @@ struct SymmetricPattern {
   // backends without pivoting know from it which way to regularise. Without it, the rows with a diagonal <= 0
   // are taken for that.
   std::vector<std::uint8_t> multiplier;
+  // Optional: a pattern of the same unknowns that differs in a few places, whose pivot sequence may serve.
+  std::shared_ptr<OrderingBase> base;
 
   std::int64_t nonzeros() const { return column_start.empty() ? 0 : column_start.back(); }
 };

@@ -88,6 +88,9 @@ class SaddlePoint {
   const Assembly& assembly() const { return assembly_; }
   Assembly& assembly() { return assembly_; }
   LinearSolver& linear_solver() { return kkt_.linear_solver(); }
+  // For what replaces it; there is no solving any more.
+  std::unique_ptr<LinearSolver> release_solver() { return kkt_.release_solver(); }
+  std::unique_ptr<LinearSolver> release_unsymmetric() { return kkt_.release_unsymmetric(); }
   const StageSeconds& seconds() const { return seconds_; }
   // Counts the time of a method that this one takes the place of.
   void add_seconds(const StageSeconds& earlier) { seconds_ += earlier; }

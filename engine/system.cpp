@@ -1,9 +1,10 @@
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "engine/row_treatment.h"
+#include "engine/solvers/ordering.h"
 
 namespace isochor {
 
@@ -20,16 +21,37 @@ std::uint64_t key_of(Index first, Index second) {
   return (static_cast<std::uint64_t>(first) << 32) | static_cast<std::uint32_t>(second);
 }
 
-// Sorted by destination, then by source: this order is what makes sums independent of the thread count.
-void sort_contributions(std::vector<Contribution>& c) {
-  tbb::parallel_sort(c.begin(), c.end(), [](const Contribution& a, const Contribution& b) {
-    return a.key != b.key ? a.key < b.key : (a.source < b.source);
-  });
+std::uint64_t destination(const Contribution& c) {
+  return c.key;
+}
+std::uint64_t destination(std::uint64_t key) {
+  return key;
+}
+
+// By destination, in linear time and stable: contributions to one stay as they came, and this order is what
+// makes sums independent of the thread count.
+template <class T>
+void sort_by_destination(std::vector<T>& items) {
+  std::array<std::uint64_t, 2> largest{};
+  for (const T& item : items) {
+    largest[0] = std::max(largest[0], destination(item) & 0xffffffffu);
+    largest[1] = std::max(largest[1], destination(item) >> 32);
+  }
+  std::vector<T> sorted(items.size());
+  for (const int half : {0, 1}) {
+    if (largest[static_cast<std::size_t>(half)] == 0) continue;
+    const auto bucket = [half](const T& item) { return (destination(item) >> (32 * half)) & 0xffffffffu; };
+    std::vector<std::size_t> next(largest[static_cast<std::size_t>(half)] + 2, 0);
+    for (const T& item : items) ++next[bucket(item) + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    for (const T& item : items) sorted[next[bucket(item)]++] = item;
+    items.swap(sorted);
+  }
 }
 
 void gather_by_key(std::vector<Contribution>& c, bool weighted, Gather& gather,
                    std::vector<std::array<Index, 2>>& ends) {
-  sort_contributions(c);
+  sort_by_destination(c);
   gather.source.reserve(c.size());
   if (weighted) gather.weight.reserve(c.size());
   for (std::size_t i = 0; i < c.size(); ++i) {
@@ -66,6 +88,7 @@ class SystemCompiler {
     build_kkt();
     locate_entries();
     group_unknowns();
+    find_ordering_base();
     hash_layout();
     return std::shared_ptr<const System>(s_);
   }
@@ -192,7 +215,7 @@ class SystemCompiler {
 
   // Gather lists for destinations 0..count-1, the key being the destination.
   static void fill_gather(std::vector<Contribution>& c, std::int64_t count, Gather& gather) {
-    sort_contributions(c);
+    sort_by_destination(c);
     std::size_t i = 0;
     for (std::int64_t d = 0; d < count; ++d) {
       for (; i < c.size() && c[i].key == static_cast<std::uint64_t>(d); ++i) {
@@ -335,56 +358,66 @@ class SystemCompiler {
     }
   }
 
+  // Unknowns ascend with nodes and then with rows, so columns come out sorted without a look at their
+  // entries.
   void build_kkt() {
-    std::vector<Contribution> entries;  // key: (column << 32) | row
-    const Index free = s_->free_unknowns();
-    const auto& first = s_->first_unknown_;
-    for (const auto& [i, j] : s_->block_nodes_) {
-      for (Index c = first[at(j)]; c < first[at(j) + 1]; ++c) {
-        for (Index r = i == j ? c : first[at(i)]; r < first[at(i) + 1]; ++r) {
-          entries.push_back({key_of(c, r), 0, 1});
-        }
-      }
-    }
     const auto& unknown = s_->row_unknown_;
+    std::vector<std::uint64_t> blocks, row_entries, compliance_entries;  // keys: column, row
+    for (const auto& [i, j] : s_->block_nodes_) blocks.push_back(key_of(j, i));
+    for_filled_blocks([&](Index i, Index j) { blocks.push_back(key_of(j, i)); });
     for (const auto& [row, node] : s_->jacobian_ends_) {
-      if (unknown[at(row)] < 0) continue;
-      for (Index c = first[at(node)]; c < first[at(node) + 1]; ++c)
-        entries.push_back({key_of(c, unknown[at(row)]), 0, 1});
+      if (unknown[at(row)] >= 0) row_entries.push_back(key_of(node, unknown[at(row)]));
     }
     for (const ComplianceEntry& e : s_->compliance_) {
-      if (unknown[at(e.row)] >= 0) entries.push_back({key_of(unknown[at(e.col)], unknown[at(e.row)]), 0, 1});
+      if (unknown[at(e.row)] >= 0)
+        compliance_entries.push_back(key_of(unknown[at(e.col)], unknown[at(e.row)]));
     }
-    for_filled_columns([&](Index column, Index from, Index to) {
-      for (Index r = from; r < to; ++r) entries.push_back({key_of(column, r), 0, 1});
-    });
-    sort_contributions(entries);
+    for (auto* keys : {&blocks, &row_entries, &compliance_entries}) {
+      sort_by_destination(*keys);
+      keys->erase(std::unique(keys->begin(), keys->end()), keys->end());
+    }
     SymmetricPattern& kkt = s_->kkt_;
-    kkt.size = free + static_cast<Index>(s_->kept_rows_.size());
-    kkt.column_start.assign(static_cast<std::size_t>(kkt.size) + 1, 0);
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      if (i > 0 && entries[i].key == entries[i - 1].key) continue;
-      kkt.row.push_back(static_cast<Index>(entries[i].key & 0xffffffffu));
-      ++kkt.column_start[static_cast<std::size_t>(entries[i].key >> 32) + 1];
+    const auto& first = s_->first_unknown_;
+    kkt.size = s_->free_unknowns() + static_cast<Index>(s_->kept_rows_.size());
+    kkt.row.reserve(9 * blocks.size() + 3 * row_entries.size() + compliance_entries.size());
+    kkt.column_start = {0};
+    const auto end_of = [](const std::vector<std::uint64_t>& keys, std::size_t from, Index column) {
+      while (from < keys.size() && static_cast<Index>(keys[from] >> 32) == column) ++from;
+      return from;
+    };
+    const auto row_of = [](std::uint64_t key) { return static_cast<Index>(key & 0xffffffffu); };
+    const auto end_column = [&] { kkt.column_start.push_back(static_cast<std::int64_t>(kkt.row.size())); };
+    std::size_t block = 0, entry = 0;
+    for (Index j = 0; j < s_->nodes(); ++j) {
+      const std::size_t end_of_blocks = end_of(blocks, block, j),
+                        end_of_entries = end_of(row_entries, entry, j);
+      for (Index c = first[at(j)]; c < first[at(j) + 1]; ++c) {
+        for (std::size_t k = block; k < end_of_blocks; ++k) {
+          const Index i = row_of(blocks[k]);
+          for (Index r = i == j ? c : first[at(i)]; r < first[at(i) + 1]; ++r) kkt.row.push_back(r);
+        }
+        for (std::size_t k = entry; k < end_of_entries; ++k) kkt.row.push_back(row_of(row_entries[k]));
+        end_column();
+      }
+      block = end_of_blocks;
+      entry = end_of_entries;
     }
-    for (std::size_t c = 0; c < at(kkt.size); ++c) kkt.column_start[c + 1] += kkt.column_start[c];
+    entry = 0;
+    for (Index u = s_->free_unknowns(); u < kkt.size; ++u) {
+      for (const std::size_t end = end_of(compliance_entries, entry, u); entry < end; ++entry)
+        kkt.row.push_back(row_of(compliance_entries[entry]));
+      end_column();
+    }
   }
 
-  // Visits the columns of all blocks that rows add to the stiffness: unknown of the column, and the
-  // rows [from, to) of it. Nodes of a row ascend, so the blocks are those of the lower triangle.
+  // Visits all blocks that rows add to the stiffness. Nodes of a row ascend, so the blocks (i, j) are those
+  // of the lower triangle.
   template <class Visit>
-  void for_filled_columns(Visit visit) const {
-    const auto& first = s_->first_unknown_;
+  void for_filled_blocks(Visit visit) const {
     for (const Index row : s_->filled_rows_) {
       const auto begin = s_->row_jacobian_begin_[at(row)], end = s_->row_jacobian_begin_[at(row) + 1];
       for (auto a = begin; a < end; ++a) {
-        const Index i = s_->jacobian_ends_[a][1];
-        for (auto b = begin; b <= a; ++b) {
-          const Index j = s_->jacobian_ends_[b][1];
-          for (Index c = first[at(j)]; c < first[at(j) + 1]; ++c) {
-            visit(c, i == j ? c : first[at(i)], first[at(i) + 1]);
-          }
-        }
+        for (auto b = begin; b <= a; ++b) visit(s_->jacobian_ends_[a][1], s_->jacobian_ends_[b][1]);
       }
     }
   }
@@ -420,8 +453,11 @@ class SystemCompiler {
       const Index row = s_->row_unknown_[at(e.row)], col = s_->row_unknown_[at(e.col)];
       s_->compliance_place_.push_back(row < 0 ? -1 : place(row, col));
     }
-    for_filled_columns([&](Index column, Index from, Index to) {
-      s_->filled_place_.push_back(from < to ? place(from, column) : -1);
+    for_filled_blocks([&](Index i, Index j) {
+      for (Index c = first[at(j)]; c < first[at(j) + 1]; ++c) {
+        const Index from = i == j ? c : first[at(i)];
+        s_->filled_place_.push_back(from < first[at(i) + 1] ? place(from, c) : -1);
+      }
     });
     for (Index i = 0; i < s_->kkt_.size; ++i) s_->diagonal_place_.push_back(s_->kkt_.column_start[at(i)]);
   }
@@ -466,6 +502,15 @@ class SystemCompiler {
       kkt.group[at(s_->row_unknown_[at(r)])] = best;
     }
     kkt.groups = groups;
+  }
+
+  void find_ordering_base() {
+    if (!s_->has_followers_) return;
+    if (!s_->parts_.ordering_base) {
+      s_->parts_.ordering_base = std::make_shared<OrderingBase>();
+      s_->parts_.ordering_base->pattern = s_->kkt_;
+    }
+    s_->kkt_.base = s_->parts_.ordering_base;
   }
 
   void hash_layout() {

@@ -19,6 +19,8 @@ struct SystemParts {
   // How rows are treated whose pools leave it to us; where it does not fit, the closest that does.
   RowTreatment treatment = RowTreatment::automatic;
   bool border_wide_rows = true;  // rather than dual, where `treatment` is dual
+  // Of a system whose stencils follow what is close: made with the first one, for those that replace it.
+  std::shared_ptr<OrderingBase> ordering_base;
 };
 
 // Where a pool's slots begin in the arrays over all pools.

@@ -237,7 +237,7 @@ Result<void> World::Impl::replace_stencils(std::vector<std::shared_ptr<const Ste
   SystemParts parts = system->parts();
   parts.stencil_pools = std::move(pools);
   const StageSeconds spent = newton->seconds();
-  if (auto r = make_method(std::move(parts)); !r) return r;
+  if (auto r = make_method(std::move(parts), true); !r) return r;
   newton->add_seconds(spent);
   return {};
 }

@@ -90,7 +90,7 @@ struct World::Impl {
   SaddleReport solve_by(SaddlePoint& other, SaddleProblem& problem, const SaddleOptions& saddle);
   void accept(double h, std::span<const Vec3> prediction);
   SaddleReport rescue(double h);
-  Result<void> make_method(SystemParts parts);
+  Result<void> make_method(SystemParts parts, bool keep_solvers = false);
   StepReport invalid(std::string reason) const;
   StepReport cancelled();
   void take_cancel(StepReport& report);

@@ -81,7 +81,7 @@ std::string no_coupling(const SystemParts& parts, const WorldOptions& options) {
 
 }  // namespace
 
-Result<void> World::Impl::make_method(SystemParts parts) {
+Result<void> World::Impl::make_method(SystemParts parts, bool keep_solvers) {
   // Augmented where the stiffness is not definite, and rows in the matrix where that is not enough.
   stand_ins.clear();
   if (treatment_of(options.method) == RowTreatment::dual || options.method == Method::augmented_ascent)
@@ -156,7 +156,18 @@ Result<void> World::Impl::make_method(SystemParts parts) {
   SolverWishes wishes;
   wishes.prefer_iterative = large && !system->couples();
   wishes.single_precision = !follows;
-  auto solver = make_linear_solver(kind, wishes);
+  std::unique_ptr<LinearSolver> solver, unsymmetric;
+  if (keep_solvers) {
+    // What replaces a system of the same unknowns works in its memory: fresh pages cost more than all else
+    // here. Should that run out, there is no way back.
+    compile_error = "world: memory ran out when stencils were replaced; make the world anew";
+    solver = newton->release_solver();
+    unsymmetric = newton->release_unsymmetric();
+    newton.reset();
+  } else {
+    solver = make_linear_solver(kind, wishes);
+    if (system->couples()) unsymmetric = make_unsymmetric_solver(kind);
+  }
   if (!solver) return Error{"world: this build does not have the linear solver that is asked for"};
   if (ascent) {
     DualAscentOptions ascent_options;
@@ -172,6 +183,7 @@ Result<void> World::Impl::make_method(SystemParts parts) {
   } else {
     newton = std::make_unique<Newton>(system, *parallel, std::move(solver));
   }
+  compile_error.clear();
   newton->cancelled = [this] {
     return cancel_requested.load(std::memory_order_relaxed) ||
            (deadline && std::chrono::steady_clock::now() > *deadline);

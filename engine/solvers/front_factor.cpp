@@ -95,13 +95,31 @@ Real* scaled_rows(const Real* panel, const Real* pivot, Index r, Index count, In
 template <class Real>
 void FrontFactor<Real>::set_tree(const FrontTree& tree) {
   tree_ = &tree;
-  release();
+  sized_ = false;
 }
 
+// Memory comes with the first factorization, and what an earlier tree had is used again: fresh pages cost as
+// much as a good part of an analysis.
 template <class Real>
-void FrontFactor<Real>::release() {
-  factor_ = {};
-  work_ = {};
+void FrontFactor<Real>::take_memory() {
+  const FrontTree& t = *tree_;
+  const auto take = [](std::vector<Real>& v, std::int64_t wanted) {
+    const auto size = static_cast<std::size_t>(wanted);
+    if (v.capacity() < size) {
+      // What has grown once may grow again.
+      const bool grows = v.capacity() > 0;
+      v = {};
+      if (grows) v.reserve(size + size / 8);
+    }
+    v.resize(size);
+  };
+  take(factor_, t.panel_start.back());
+  take(work_, t.workspace);
+  pivot_.resize(at(t.size));
+  permuted_.resize(at(t.size));
+  gathered_.resize(at(t.largest_panel));
+  job_ok_.resize(t.job_start.size());
+  sized_ = true;
 }
 
 template <class Real>
@@ -195,14 +213,7 @@ bool FrontFactor<Real>::eliminate(Index f, const RowLoop& loop, std::span<const 
 template <class Real>
 bool FrontFactor<Real>::factor(const RowLoop& loop, std::span<const double> values, Real smallest) {
   const FrontTree& t = *tree_;
-  if (factor_.empty()) {
-    factor_.resize(static_cast<std::size_t>(t.panel_start.back()));
-    work_.resize(static_cast<std::size_t>(t.workspace));
-    pivot_.resize(at(t.size));
-    permuted_.resize(at(t.size));
-    gathered_.resize(at(t.largest_panel));
-    job_ok_.resize(t.job_start.size());
-  }
+  if (!sized_) take_memory();
   const RowLoop alone;
   loop(static_cast<Index>(t.job_start.size()), 1, [&](Index begin, Index end) {
     for (Index j = begin; j < end; ++j) {
@@ -255,10 +266,8 @@ void FrontFactor<Real>::solve(std::span<Real> x) {
       vector(own, k).noalias() -= dense(panel + k, u, k, h).transpose() * vector(g, u);
     }
     for (Index j = k - 1; j >= 0; --j) {
-      const Real* const column = panel + std::ptrdiff_t{j} * h;
-      Real sum = own[j];
-      for (Index i = j + 1; i < k; ++i) sum -= column[i] * own[i];
-      own[j] = sum;
+      Real* const column = panel + std::ptrdiff_t{j} * h;
+      own[j] -= vector(column + j + 1, k - j - 1).dot(vector(own + j + 1, k - j - 1));
     }
   }
   for (Index i = 0; i < t.size; ++i) x[at(t.unknown[at(i)])] = y[i];

@@ -13,7 +13,7 @@ namespace isochor {
 template <class Real>
 class FrontFactor {
  public:
-  // The tree must outlive the factor.
+  // The tree must outlive the factor. Memory that is there is kept for it.
   void set_tree(const FrontTree& tree);
   // False when a pivot is below `smallest` in magnitude, or not a number.
   bool factor(const RowLoop& loop, std::span<const double> values, Real smallest);
@@ -21,15 +21,16 @@ class FrontFactor {
   // x = A^-1 x, in the sequence of the pattern's unknowns.
   void solve(std::span<Real> x);
   std::size_t bytes() const { return (factor_.size() + work_.size() + pivot_.size()) * sizeof(Real); }
-  void release();
 
  private:
+  void take_memory();
   bool eliminate(Index front, const RowLoop& loop, std::span<const double> values, Real smallest);
   void assemble(Index front, std::span<const double> values);
   bool factor_panel(Index front, const RowLoop& loop, Real smallest);
   void update(Index front, const RowLoop& loop);
 
   const FrontTree* tree_ = nullptr;
+  bool sized_ = false;
   std::vector<Real> factor_, work_, pivot_, permuted_, gathered_;
   std::vector<std::uint8_t> job_ok_;
 };

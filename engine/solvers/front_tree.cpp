@@ -1,6 +1,7 @@
 #include "engine/solvers/front_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -387,18 +388,33 @@ double operations_of(const SymmetricPattern& pattern, const Ordering& ordering) 
   return operations_of_counts(count);
 }
 
-Ordering best_ordering(const SymmetricPattern& pattern, OrderingMethod method) {
-  if (method != OrderingMethod::best) return order_unknowns(pattern, method);
+static Ordering best_of_all(const SymmetricPattern& pattern, double& fewest) {
+  constexpr std::array kCandidates{OrderingMethod::metis, OrderingMethod::amf, OrderingMethod::amd};
   Ordering best;
-  double fewest = std::numeric_limits<double>::infinity();
-  for (const auto candidate : {OrderingMethod::metis, OrderingMethod::amf, OrderingMethod::amd}) {
-    Ordering ordering = order_unknowns(pattern, candidate);
+  fewest = std::numeric_limits<double>::infinity();
+  for (Ordering& ordering : order_unknowns(pattern, kCandidates)) {
     const double operations = operations_of(pattern, ordering);
     if (operations >= fewest) continue;
     fewest = operations;
     best = std::move(ordering);
   }
   return best;
+}
+
+static bool same_unknowns(const SymmetricPattern& a, const SymmetricPattern& b) {
+  return a.size == b.size && a.groups == b.groups && a.group == b.group && a.multiplier == b.multiplier;
+}
+
+Ordering best_ordering(const SymmetricPattern& pattern, OrderingMethod method) {
+  constexpr double little_more = 1.15;
+  if (method != OrderingMethod::best) return order_unknowns(pattern, method);
+  if (pattern.base && pattern.base->pattern.size > 0 && same_unknowns(pattern, pattern.base->pattern)) {
+    OrderingBase& base = *pattern.base;
+    if (base.operations == 0) base.ordering = best_of_all(base.pattern, base.operations);
+    if (operations_of(pattern, base.ordering) <= little_more * base.operations) return base.ordering;
+  }
+  double operations = 0;
+  return best_of_all(pattern, operations);
 }
 
 FrontTree front_tree(const SymmetricPattern& pattern, const Ordering& ordering) {

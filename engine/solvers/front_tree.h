@@ -48,7 +48,8 @@ struct FrontTree {
 double operations_of(const SymmetricPattern& pattern, const Ordering& ordering);
 // With `best`: of nested dissection, minimum fill and minimum degree the one that costs least. Minimum fill
 // wins on sparse meshes, minimum degree on the denser patterns of slender bodies, nested dissection on
-// compact ones.
+// compact ones. The base of the pattern is asked first: where its sequence has up to 15 % more operations
+// than there, no other is looked for.
 Ordering best_ordering(const SymmetricPattern& pattern, OrderingMethod method = OrderingMethod::best);
 FrontTree front_tree(const SymmetricPattern& pattern, const Ordering& ordering);
 

@@ -3,8 +3,10 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
 #include <mutex>
 #include <numeric>
 
@@ -68,37 +70,80 @@ std::vector<std::uint8_t> find_dense(const SymmetricPattern& p, std::span<const 
   return dense;
 }
 
-Graph quotient_graph(const SymmetricPattern& p, std::span<const Index> group, Index groups,
+// The unknowns of each group, ascending, but those that are dense.
+struct Members {
+  std::vector<Index> start, unknown;
+};
+
+Members members_of(std::span<const Index> group, Index groups, std::span<const std::uint8_t> dense) {
+  Members m;
+  m.start.assign(at(groups) + 1, 0);
+  for (std::size_t i = 0; i < group.size(); ++i) m.start[at(group[i]) + 1] += dense[i] == 0;
+  std::partial_sum(m.start.begin(), m.start.end(), m.start.begin());
+  m.unknown.resize(at(m.start.back()));
+  std::vector<Index> next(m.start.begin(), m.start.end() - 1);
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    if (!dense[i]) m.unknown[at(next[at(group[i])]++)] = static_cast<Index>(i);
+  }
+  return m;
+}
+
+// Visits (a, b) in the lists of `from` for every b in the list of a, and makes the lists by b: ascending.
+Graph transposed(const Graph& from) {
+  Graph to;
+  to.start.assign(from.start.size(), 0);
+  for (const Index b : from.neighbour) ++to.start[at(b) + 1];
+  std::partial_sum(to.start.begin(), to.start.end(), to.start.begin());
+  to.neighbour.resize(from.neighbour.size());
+  std::vector<Index> next(to.start.begin(), to.start.end() - 1);
+  for (Index a = 0; a < from.size(); ++a) {
+    for (Index k = from.start[at(a)]; k < from.start[at(a) + 1]; ++k)
+      to.neighbour[at(next[at(from.neighbour[at(k)])]++)] = a;
+  }
+  return to;
+}
+
+// In time linear in the entries: each list is made unique by marks, and sorted by transposing.
+Graph quotient_graph(const SymmetricPattern& p, std::span<const Index> group, const Members& members,
                      std::span<const std::uint8_t> dense) {
-  std::vector<Pair> edges;
-  for (Index c = 0; c < p.size; ++c) {
-    if (dense[at(c)]) continue;
-    Index last = -1;  // neighbouring entries of a column mostly belong to one group
-    for (auto k = p.column_start[at(c)]; k < p.column_start[at(c) + 1]; ++k) {
-      const Index r = p.row[static_cast<std::size_t>(k)];
-      const Index g = group[at(r)];
-      if (dense[at(r)] || g == group[at(c)] || g == last) continue;
-      last = g;
-      edges.emplace_back(group[at(c)], g);
-      edges.emplace_back(g, group[at(c)]);
+  const auto groups = static_cast<Index>(members.start.size()) - 1;
+  std::vector<Index> mark(at(groups), -1);
+  Graph below;  // from the group of a column to those of its rows
+  below.start = {0};
+  for (Index g = 0; g < groups; ++g) {
+    mark[at(g)] = g;
+    for (Index m = members.start[at(g)]; m < members.start[at(g) + 1]; ++m) {
+      const Index c = members.unknown[at(m)];
+      for (auto k = p.column_start[at(c)]; k < p.column_start[at(c) + 1]; ++k) {
+        const Index r = p.row[static_cast<std::size_t>(k)], h = group[at(r)];
+        if (mark[at(h)] == g || dense[at(r)]) continue;
+        mark[at(h)] = g;
+        below.neighbour.push_back(h);
+      }
     }
+    below.start.push_back(static_cast<Index>(below.neighbour.size()));
   }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  Graph graph;
-  graph.start.assign(at(groups) + 1, 0);
-  graph.weight.assign(at(groups), 0);
-  graph.neighbour.reserve(edges.size());
-  for (const auto& [a, b] : edges) {
-    ++graph.start[at(a) + 1];
-    graph.neighbour.push_back(b);
+  const Graph above = transposed(below);
+  Graph both;
+  both.start = {0};
+  both.neighbour.reserve(2 * below.neighbour.size());
+  std::fill(mark.begin(), mark.end(), -1);
+  for (Index g = 0; g < groups; ++g) {
+    for (const Graph* half : std::array<const Graph*, 2>{&below, &above}) {
+      for (Index k = half->start[at(g)]; k < half->start[at(g) + 1]; ++k) {
+        const Index h = half->neighbour[at(k)];
+        if (mark[at(h)] == g) continue;
+        mark[at(h)] = g;
+        both.neighbour.push_back(h);
+      }
+    }
+    both.start.push_back(static_cast<Index>(both.neighbour.size()));
   }
-  std::partial_sum(graph.start.begin(), graph.start.end(), graph.start.begin());
-  for (Index i = 0; i < p.size; ++i) {
-    if (!dense[at(i)]) ++graph.weight[at(group[at(i)])];
-  }
+  Graph graph = transposed(both);
+  graph.weight.resize(at(groups));
   // A group whose unknowns are all dense has no edges; the libraries want positive weights.
-  for (Index& w : graph.weight) w = std::max<Index>(w, 1);
+  for (std::size_t g = 0; g < at(groups); ++g)
+    graph.weight[g] = std::max<Index>(members.start[g + 1] - members.start[g], 1);
   return graph;
 }
 
@@ -243,56 +288,66 @@ std::string_view metis_version() {
 #endif
 }
 
-Ordering order_unknowns(const SymmetricPattern& pattern, OrderingMethod method) {
+std::vector<Ordering> order_unknowns(const SymmetricPattern& pattern,
+                                     std::span<const OrderingMethod> methods) {
   const Index n = pattern.size;
   std::vector<Index> own_group;
   std::span<const Index> group = pattern.group;
   Index groups = pattern.groups;
-  if (group.empty() || method == OrderingMethod::pord) {
+  const bool of_unknowns = std::find(methods.begin(), methods.end(), OrderingMethod::pord) != methods.end();
+  if (group.empty() || of_unknowns) {
     own_group.resize(at(n));
     std::iota(own_group.begin(), own_group.end(), 0);
     group = own_group;
     groups = n;
   }
   const std::vector<std::uint8_t> dense = find_dense(pattern, group, groups);
-  const Graph graph = quotient_graph(pattern, group, groups, dense);
-
-  Ordering result;
-  std::vector<Index> position(at(groups));
-  std::iota(position.begin(), position.end(), 0);
-  if (method != OrderingMethod::as_given && !graph.neighbour.empty()) {
-    const bool by_mumps = method == OrderingMethod::pord || method == OrderingMethod::amf;
-    if (by_mumps && mumps_graph_ordering(graph.start, graph.neighbour, method, position))
-      result.method = method;
+  const Members members = members_of(group, groups, dense);
+  const Graph graph = quotient_graph(pattern, group, members, dense);
+  std::vector<Ordering> results;
+  for (const OrderingMethod method : methods) {
+    Ordering& result = results.emplace_back();
+    std::vector<Index> position(at(groups));
+    std::iota(position.begin(), position.end(), 0);
+    if (method != OrderingMethod::as_given && !graph.neighbour.empty()) {
+      const bool by_mumps = method == OrderingMethod::pord || method == OrderingMethod::amf;
+      if (by_mumps && mumps_graph_ordering(graph.start, graph.neighbour, method, position))
+        result.method = method;
 #ifdef ISOCHOR_HAVE_METIS
-    if (result.method == OrderingMethod::as_given && method != OrderingMethod::amd &&
-        metis_position(graph, position)) {
-      result.method = OrderingMethod::metis;
-    }
+      if (result.method == OrderingMethod::as_given && method != OrderingMethod::amd &&
+          metis_position(graph, position)) {
+        result.method = OrderingMethod::metis;
+      }
 #endif
-    if (result.method == OrderingMethod::as_given) {
-      amd_position(graph, position);
-      result.method = OrderingMethod::amd;
+      if (result.method == OrderingMethod::as_given) {
+        amd_position(graph, position);
+        result.method = OrderingMethod::amd;
+      }
     }
+    const std::vector<Index> group_order = postorder(graph, order_groups(pattern, group, graph, position));
+    // Within a group, as at the dense end, the multiplier rows come after the unknowns they constrain.
+    const auto late = [&](Index i) { return !pattern.multiplier.empty() && pattern.multiplier[at(i)] != 0; };
+    result.unknown.reserve(at(n));
+    for (const Index g : group_order) {
+      const auto begin = members.unknown.begin() + members.start[at(g)],
+                 end = members.unknown.begin() + members.start[at(g) + 1];
+      std::copy_if(begin, end, std::back_inserter(result.unknown), [&](Index i) { return !late(i); });
+      std::copy_if(begin, end, std::back_inserter(result.unknown), late);
+    }
+    result.dense = n - static_cast<Index>(result.unknown.size());
+    for (const bool last : {false, true}) {
+      for (Index i = 0; i < n; ++i) {
+        if (dense[at(i)] && late(i) == last) result.unknown.push_back(i);
+      }
+    }
+    result.position.resize(at(n));
+    for (Index k = 0; k < n; ++k) result.position[at(result.unknown[at(k)])] = k;
   }
-  const std::vector<Index> group_order = postorder(graph, order_groups(pattern, group, graph, position));
+  return results;
+}
 
-  // Within a group, as at the dense end, the multiplier rows come after the unknowns they constrain.
-  std::vector<Index> rank(at(groups));
-  for (Index k = 0; k < groups; ++k) rank[at(group_order[at(k)])] = k;
-  const auto late = [&](Index i) { return !pattern.multiplier.empty() && pattern.multiplier[at(i)] != 0; };
-  result.unknown.resize(at(n));
-  std::iota(result.unknown.begin(), result.unknown.end(), 0);
-  std::sort(result.unknown.begin(), result.unknown.end(), [&](Index a, Index b) {
-    if (dense[at(a)] != dense[at(b)]) return dense[at(a)] < dense[at(b)];
-    if (!dense[at(a)] && group[at(a)] != group[at(b)]) return rank[at(group[at(a)])] < rank[at(group[at(b)])];
-    if (late(a) != late(b)) return late(b);
-    return a < b;
-  });
-  result.position.resize(at(n));
-  for (Index k = 0; k < n; ++k) result.position[at(result.unknown[at(k)])] = k;
-  result.dense = static_cast<Index>(std::count(dense.begin(), dense.end(), 1));
-  return result;
+Ordering order_unknowns(const SymmetricPattern& pattern, OrderingMethod method) {
+  return std::move(order_unknowns(pattern, {&method, 1}).front());
 }
 
 }  // namespace isochor

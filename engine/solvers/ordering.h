@@ -1,6 +1,7 @@
 // Fill-reducing pivot sequence, computed on the quotient graph of a pattern's groups.
 #pragma once
 
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -28,6 +29,18 @@ struct Ordering {
 // taken out of the graph, which it would only blur, and goes last; a group of multiplier rows alone is moved
 // behind the first group with an unknown that it constrains, for a zero diagonal is no pivot before that.
 Ordering order_unknowns(const SymmetricPattern& pattern, OrderingMethod method = OrderingMethod::best);
+// One for each of the methods, all on groups unless pord is among them.
+std::vector<Ordering> order_unknowns(const SymmetricPattern& pattern,
+                                     std::span<const OrderingMethod> methods);
+
+// The pattern that a scene starts with, whose pivot sequence serves what comes of it as long as that costs
+// little more (best_ordering() in front_tree.h). It is found when it is first asked for and depends on nothing
+// else, so that a run does not depend on where it was started.
+struct OrderingBase {
+  SymmetricPattern pattern;
+  Ordering ordering;
+  double operations = 0;  // multiplications of the factorization; 0: not found yet
+};
 
 bool have_metis();
 std::string_view metis_version();  // empty when not built in

@@ -144,6 +144,74 @@ TEST_CASE("the tree counts what a dense elimination fills") {
   }
 }
 
+namespace {
+
+// With entries more in the lower triangle, at most `reach` below the diagonal.
+SymmetricPattern with_entries(SymmetricPattern p, Index count, Index reach) {
+  std::vector<std::vector<Index>> column(at(p.size));
+  for (Index c = 0; c < p.size; ++c)
+    column[at(c)].assign(p.row.begin() + p.column_start[at(c)], p.row.begin() + p.column_start[at(c) + 1]);
+  std::uint32_t state = 7;
+  const auto draw = [&](Index end) {
+    state = state * 1664525u + 1013904223u;
+    return static_cast<Index>((state >> 8) % static_cast<std::uint32_t>(end));
+  };
+  for (Index k = 0; k < count; ++k) {
+    const Index c = draw(p.size - reach);
+    column[at(c)].push_back(c + draw(reach));
+  }
+  p.row.clear();
+  p.column_start = {0};
+  for (auto& rows : column) {
+    std::sort(rows.begin(), rows.end());
+    rows.erase(std::unique(rows.begin(), rows.end()), rows.end());
+    p.row.insert(p.row.end(), rows.begin(), rows.end());
+    p.column_start.push_back(static_cast<std::int64_t>(p.row.size()));
+  }
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("a pattern that differs little takes the sequence of its base, one that differs much has its own") {
+  SymmetricPattern pattern = test::saddle({600, 200, false, 0, 0}).pattern;
+  const Ordering own = best_ordering(pattern);
+  const auto with_base = [&](Index count, Index reach) {
+    SymmetricPattern changed = with_entries(pattern, count, reach);
+    changed.base = std::make_shared<OrderingBase>();
+    changed.base->pattern = pattern;
+    return changed;
+  };
+  const SymmetricPattern little = with_base(10, 30), much = with_base(2000, 1800);
+  REQUIRE(little.nonzeros() > pattern.nonzeros());
+  CHECK((best_ordering(little).position == own.position));
+  // What was asked before does not matter.
+  CHECK((best_ordering(little).position == own.position));
+  const Ordering other = best_ordering(much);
+  CHECK((other.position != own.position));
+  CHECK(operations_of(much, other) < operations_of(much, own));
+  SymmetricPattern strange = with_base(10, 30);
+  strange.base->pattern = test::saddle({90, 10, false, 0, 0}).pattern;
+  CHECK((best_ordering(strange).position == best_ordering(with_entries(pattern, 10, 30)).position));
+}
+
+TEST_CASE("factors take another tree in the memory of the last") {
+  FrontFactor<double> factor;
+  std::vector<FrontTree> trees;
+  trees.reserve(3);
+  for (const Index size : {200, 60, 240}) {
+    const Matrix m = test::saddle({size, size / 3, false, 1e-3, 2});
+    trees.push_back(front_tree(m.pattern, order_unknowns(m.pattern)));
+    factor.set_tree(trees.back());
+    REQUIRE(factor.factor(RowLoop(), m.values, 1e-13));
+    std::vector<double> x = test::random_vector(m.pattern.size);
+    const Eigen::VectorXd exact =
+        m.dense().partialPivLu().solve(Eigen::Map<const Eigen::VectorXd>(x.data(), m.pattern.size));
+    factor.solve(x);
+    CHECK((Eigen::Map<Eigen::VectorXd>(x.data(), exact.size()) - exact).norm() < 1e-9 * exact.norm());
+  }
+}
+
 TEST_CASE("fronts eliminate and solve in both precisions") {
   for (const bool dense_row : {false, true}) {
     const Matrix m = test::saddle({120, 36, dense_row, 1e-3, 2});
