@@ -61,6 +61,7 @@ Result<EdgeContact> EdgeContact::build(Builder& builder, const SurfaceContactDef
   setup->edges = edges;
   setup->offset = def.thickness;
   setup->friction = {def.friction, def.static_friction};
+  setup->coupled = def.coupling == FrictionCoupling::coupled;
   setup->open = builder.length();
   auto rows = std::make_shared<ContactRows>(setup->name, def.resolve_time);
   for (Index e = 0; e < edges->count(); ++e) {

@@ -78,12 +78,14 @@ EdgeContactPool::Friction EdgeContactPool::friction(const StencilRequest& q, Ind
   f.gap = gap(s, q.lag.x);
   // Edges that do not meet have no normal force, wherever their places are.
   if (f.gap.weight == 0) return f;
-  f.spring.limit = coefficient(s, q.memory) * f.gap.weight * std::max(0.0, -q.lag.function_multiplier[at(s)]);
+  f.mu = coefficient(s, q.memory);
+  f.spring.limit = f.mu * f.gap.weight * std::max(0.0, -q.lag.function_multiplier[at(s)]);
   f.spring.normal = f.gap.normal;
   const auto nodes = nodes_[s];
   Vec3 slip = (1 / f.spring.stiffness) * kept_pull(s, q.memory, q.lag.x);
   for (std::size_t i = 0; i < kPairNodes && !q.increment.before.empty(); ++i)
     slip += f.gap.share(i) * (q.x[at(nodes[i])] - q.increment.before[at(nodes[i])]);
+  f.whole = slip;
   f.spring.z = slip - dot(slip, f.gap.normal) * f.gap.normal;
   return f;
 }

@@ -19,6 +19,7 @@ class EdgeContactPool final : public StencilPool {
     std::shared_ptr<const SkinEdges> edges;
     double offset = 0;  // [m]
     FrictionLaw friction;
+    bool coupled = false;
     std::vector<double> stick;  // by edge: stiffness of friction that sticks [N/m]
     double open = 1;            // gap of edges without a partner [m]
   };
@@ -30,6 +31,8 @@ class EdgeContactPool final : public StencilPool {
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
 
   bool has_lag() const override { return setup_->friction.any(); }
+  bool couples() const override { return setup_->friction.any() && setup_->coupled; }
+  void lag_derivatives(const StencilRequest& request, const LagSlots& slots) const override;
   // By edge: one more than the partner, then the pull in the axes of the edge and what the law keeps.
   int memory() const override { return memory_per_edge() * stencils(); }
   void accept(const StencilRequest& request, std::span<double> memory) const override;
@@ -49,12 +52,17 @@ class EdgeContactPool final : public StencilPool {
   struct Friction {
     FrictionSpring spring;
     EdgeGap gap;
+    double mu = 0;
+    Vec3 whole{};  // slip, with what the last step left of the pull, not yet across the normal [m]
   };
   double coefficient(Index s, std::span<const double> memory) const;
   int memory_per_edge() const { return setup_->friction.any() ? 4 + setup_->friction.memory() : 1; }
   std::array<Vec3, kPairNodes> places(Index s, std::span<const Vec3> x) const;
   Friction friction(const StencilRequest& request, Index s) const;
   Mat3 axes(Index s, std::span<const Vec3> x) const;
+  // Of kept_pull() when node `node` of the stencil moves.
+  Vec3 kept_pull_rate(Index s, std::span<const double> memory, std::span<const Vec3> x, std::size_t node,
+                      const Vec3& rate) const;
   double reach() const { return setup_->offset + 0.75 * setup_->edges->size(); }
 
   std::shared_ptr<const Setup> setup_;

@@ -46,46 +46,65 @@ double falls(const Vec3& n, const Vec3& p, const Vec3& v) {
   return length > 0 ? dot(n, v) * norm(p) / length : 0;
 }
 
-// The value from the differences, with derivatives; those beside the edges only where N says that they count.
+// What a pair of edges is made of, from the differences and with derivatives in them; those beside the edges
+// only where N says that they count.
 template <std::size_t N, bool kCurved>
-Jet<N, kCurved> value_of(const std::array<Vec3, kPairNodes>& x, const EdgeGap& gap, double offset) {
+struct PairJets {
   using J = Jet<N, kCurved>;
   std::array<JetVec<J>, N / 3> d;
-  for (std::size_t k = 0; k < N / 3; ++k) {
-    const Vec3 v = x[kDifference[k][0]] - x[kDifference[k][1]];
-    for (std::size_t i = 0; i < 3; ++i) {
-      d[k][i].value = v[static_cast<int>(i)];
-      d[k][i].slope[3 * k + i] = 1;
+  JetVec<J> c;
+  J square, one_over;
+  double sign;  // of the normal against p x q
+
+  PairJets(const std::array<Vec3, kPairNodes>& x, const EdgeGap& gap) {
+    for (std::size_t k = 0; k < N / 3; ++k) {
+      const Vec3 v = x[kDifference[k][0]] - x[kDifference[k][1]];
+      for (std::size_t i = 0; i < 3; ++i) {
+        d[k][i].value = v[static_cast<int>(i)];
+        d[k][i].slope[3 * k + i] = 1;
+      }
     }
+    c = cross(d[0], d[1]);
+    square = dot(c, c);
+    one_over = inverse(root(square));
+    sign = dot(gap.normal, cross(x[1] - x[0], x[5] - x[4])) > 0 ? 1 : -1;
   }
-  const auto &p = d[0], &q = d[1], &r = d[2];
-  const JetVec<J> c = cross(p, q);
-  const J square = dot(c, c), one_over = inverse(root(square));
-  const Vec3 area = cross(x[1] - x[0], x[5] - x[4]);
-  const double sign = dot(gap.normal, area) > 0 ? 1 : -1;
-  J out = sign * (dot(c, r) * one_over);
+  J distance() const { return sign * (dot(c, d[2]) * one_over); }
+  // Of the nearest places along the first and the second edge.
+  std::array<J, 2> places() const {
+    const J one_over_square = one_over * one_over;
+    return {-1.0 * (dot(cross(d[2], d[1]), c) * one_over_square),
+            -1.0 * (dot(cross(d[2], d[0]), c) * one_over_square)};
+  }
+  // Times every step that has a slope here.
+  J faded(J out) const {
+    const J pp = dot(d[0], d[0]), qq = dot(d[1], d[1]), sine = square * inverse(pp * qq);
+    if (!kAcross.flat(sine.value)) out = out * kAcross.of(sine);
+    for (const J& place : places()) {
+      J rest = -1.0 * place;
+      rest.value += 1;
+      if (!kEnd.flat(place.value)) out = out * kEnd.of(place);
+      if (!kEnd.flat(rest.value)) out = out * kEnd.of(rest);
+    }
+    if constexpr (N > 9) {
+      for (std::size_t k = 3; k < kDifferences; ++k) {
+        const bool first = k < 5;
+        const JetVec<J> side = cross(first ? d[0] : d[1], d[k]);
+        const J beside = inverse(root(dot(side, side) * inverse(first ? pp : qq)));
+        const J fall = (first ? sign : -sign) * (dot(c, d[k]) * one_over * beside);
+        if (!kFall.flat(fall.value)) out = out * kFall.of(fall);
+      }
+    }
+    return out;
+  }
+};
+
+template <std::size_t N, bool kCurved>
+Jet<N, kCurved> value_of(const std::array<Vec3, kPairNodes>& x, const EdgeGap& gap, double offset) {
+  const PairJets<N, kCurved> pair(x, gap);
+  Jet<N, kCurved> out = pair.distance();
   out.value -= offset;
-  if (gap.plain) return out;
-  const J pp = dot(p, p), qq = dot(q, q), sine = square * inverse(pp * qq);
-  if (!kAcross.flat(sine.value)) out = out * kAcross.of(sine);
-  const J one_over_square = one_over * one_over;
-  for (const auto& across : {q, p}) {
-    const J place = -1.0 * (dot(cross(r, across), c) * one_over_square);
-    J rest = -1.0 * place;
-    rest.value += 1;
-    if (!kEnd.flat(place.value)) out = out * kEnd.of(place);
-    if (!kEnd.flat(rest.value)) out = out * kEnd.of(rest);
-  }
-  if constexpr (N > 9) {
-    for (std::size_t k = 3; k < kDifferences; ++k) {
-      const bool first = k < 5;
-      const JetVec<J> side = cross(first ? p : q, d[k]);
-      const J beside = inverse(root(dot(side, side) * inverse(first ? pp : qq)));
-      const J fall = (first ? sign : -sign) * (dot(c, d[k]) * one_over * beside);
-      if (!kFall.flat(fall.value)) out = out * kFall.of(fall);
-    }
-  }
-  return out;
+  return gap.plain ? out : pair.faded(out);
 }
 
 // Whether a triangle's fall has a slope.
@@ -112,6 +131,32 @@ std::array<Vec3, kPairNodes> slopes_with(const std::array<Vec3, kPairNodes>& x, 
     const Vec3 slope{value.slope[3 * k], value.slope[3 * k + 1], value.slope[3 * k + 2]};
     out[kDifference[k][0]] += slope;
     out[kDifference[k][1]] -= slope;
+  }
+  return out;
+}
+
+template <std::size_t N>
+EdgeRates rates_with(const std::array<Vec3, kPairNodes>& x, const EdgeGap& gap) {
+  using J = Jet<N, false>;
+  const PairJets<N, false> pair(x, gap);
+  const std::array<J, 2> places = pair.places();
+  JetVec<J> normal;
+  for (std::size_t i = 0; i < 3; ++i) normal[i] = pair.sign * (pair.c[i] * pair.one_over);
+  J weight;
+  weight.value = 1;
+  if (!gap.plain) weight = pair.faded(weight);
+  EdgeRates out;
+  for (std::size_t k = 0; k < N / 3; ++k) {
+    for (const std::size_t node : kDifference[k]) {
+      const double f = part(k, node);
+      for (std::size_t e = 0; e < 3; ++e) {
+        const auto along = static_cast<int>(e);
+        for (std::size_t i = 0; i < 3; ++i)
+          out.normal[node](static_cast<int>(i), along) += f * normal[i].slope[3 * k + e];
+        for (std::size_t t = 0; t < 2; ++t) out.place[t][node][along] += f * places[t].slope[3 * k + e];
+        out.weight[node][along] += f * weight.slope[3 * k + e];
+      }
+    }
   }
   return out;
 }
@@ -191,6 +236,11 @@ void add_edge_curvature(const std::array<Vec3, kPairNodes>& x, const EdgeGap& ga
     add_curvature_with<21>(x, gap, offset, factor, blocks);
   else
     add_curvature_with<9>(x, gap, offset, factor, blocks);
+}
+
+EdgeRates edge_rates(const std::array<Vec3, kPairNodes>& x, const EdgeGap& gap) {
+  if (gap.weight == 0) return {};
+  return !gap.plain && tilts(x, gap) ? rates_with<21>(x, gap) : rates_with<9>(x, gap);
 }
 
 double edge_crossing_time(const std::array<Vec3, kPairNodes>& start,

@@ -28,12 +28,16 @@ struct EdgeGap {
   std::array<double, 2> place{};  // of the nearest places along both edges, within [0, 1] where they count
   bool facing = false;            // the triangles fall away from the normal, or nearly do
   bool plain = false;             // no step has a slope here: the value is that of lines
-  // Share of node i in the motion of the nearest place of the first edge relative to that of the second.
+  // Share of node i in the motion of the nearest place of the first edge relative to that of the second, and
+  // its slope in the place on the edge that the node belongs to.
   double share(std::size_t i) const {
-    constexpr std::array<int, kPairNodes> sign{1, 1, 0, 0, -1, -1, 0, 0};
     const double t = place[i / kEdgeNodes];
-    return sign[i] * (i % kEdgeNodes == 0 ? 1 - t : t);
+    return kSign[i] * (i % kEdgeNodes == 0 ? 1 - t : t);
   }
+  static double share_slope(std::size_t i) { return i % kEdgeNodes == 0 ? -kSign[i] : kSign[i]; }
+
+ private:
+  static constexpr std::array<int, kPairNodes> kSign{1, 1, 0, 0, -1, -1, 0, 0};
 };
 
 EdgeGap edge_gap(const std::array<Vec3, kPairNodes>& x, double offset);
@@ -41,6 +45,14 @@ EdgeGap edge_gap(const std::array<Vec3, kPairNodes>& x, double offset);
 // Slopes of the value by node.
 std::array<Vec3, kPairNodes> edge_slopes(const std::array<Vec3, kPairNodes>& x, const EdgeGap& gap,
                                          double offset);
+// Slopes by node of the normal (a column a coordinate of the node), of both places, and of the weight; zero
+// where edges do not count.
+struct EdgeRates {
+  std::array<Mat3, kPairNodes> normal{};
+  std::array<std::array<Vec3, kPairNodes>, 2> place{};
+  std::array<Vec3, kPairNodes> weight{};
+};
+EdgeRates edge_rates(const std::array<Vec3, kPairNodes>& x, const EdgeGap& gap);
 // Adds factor times its second derivative to packed blocks (row i, column j <= i at i (i + 1) / 2 + j).
 void add_edge_curvature(const std::array<Vec3, kPairNodes>& x, const EdgeGap& gap, double offset,
                         double factor, Mat3* blocks);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/direction_rate.h"
 #include "constraints/surface_contact_pool.h"
 
 namespace isochor {
@@ -11,12 +12,6 @@ namespace {
 
 double norm(const Vec3& v) {
   return std::sqrt(dot(v, v));
-}
-
-// Rate of v / |v|.
-Vec3 direction_rate(const Vec3& v, const Vec3& rate) {
-  const double length = norm(v);
-  return (1 / length) * (rate - (dot(v, rate) / (length * length)) * v);
 }
 
 }  // namespace

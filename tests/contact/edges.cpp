@@ -231,12 +231,13 @@ double of(const World& world, const std::string& quantity) {
 }
 
 EffectId touch(World& world, BodyId body, BodyId against, double friction = 0,
-               std::optional<double> compliance = {}) {
+               std::optional<double> compliance = {}, FrictionCoupling coupling = FrictionCoupling::lagged) {
   SurfaceContactDef def;
   def.body = body;
   def.against = against;
   def.friction = friction;
   def.compliance = compliance;
+  def.coupling = coupling;
   return test::value(world.add(surface_contact(def)));
 }
 
@@ -249,7 +250,8 @@ struct Crossing {
   World world;
   BodyId lower{}, upper{};
 };
-Crossing pressed(double depth, double compliance, double friction = 0, const Vec3& slide = {}) {
+Crossing pressed(double depth, double compliance, double friction = 0, const Vec3& slide = {},
+                 FrictionCoupling coupling = FrictionCoupling::lagged) {
   Crossing s{test::make_world(test::static_options()), {}, {}};
   const auto material = test::neo_hookean(1e5, 0.3);
   s.lower = test::add_body(s.world, bar(kLength, kWidth, {kCells, 2}, false), Element::tet4, material, 1000,
@@ -258,7 +260,7 @@ Crossing pressed(double depth, double compliance, double friction = 0, const Vec
                            Element::tet4, material, 1000, "upper");
   test::hold(s.world, s.lower, {"y0", "z0"});
   test::hold(s.world, s.upper, {"y0", "z0"}, {}, Vec3{0, 0, -depth} + slide);
-  touch(s.world, s.lower, s.upper, friction, compliance);
+  touch(s.world, s.lower, s.upper, friction, compliance, coupling);
   return s;
 }
 
@@ -297,6 +299,33 @@ TEST_CASE("edges that cross rub") {
       CHECK(rub < 0.9 * mu * normal);
     // The upper bar drags the lower one along; the normal is not quite upright.
     CHECK(of(s.world, "force_x") == Approx(rub).margin(0.03 * normal));
+  }
+}
+
+TEST_CASE("coupled friction of edges ends where lagged friction does") {
+  for (const double slide : {0.0005, 0.02}) {
+    Crossing lagged = pressed(0.01, 2e-8, 0.3, {slide, 0, 0}),
+             coupled = pressed(0.01, 2e-8, 0.3, {slide, 0, 0}, FrictionCoupling::coupled);
+    int lagged_work = 0, coupled_work = 0;
+    for (int step = 0; step < 4; ++step) {
+      const StepReport a = test::must_advance(lagged.world, 0.25),
+                       b = test::must_advance(coupled.world, 0.25);
+      lagged_work += a.iterations + a.corrections;
+      coupled_work += b.iterations + b.corrections;
+      double apart = 0;
+      for (const BodyId body : {lagged.lower, lagged.upper}) {
+        const auto x = lagged.world.positions(body), y = coupled.world.positions(body);
+        for (std::size_t i = 0; i < x.size(); ++i) {
+          const Vec3 d = x[i] - y[i];
+          apart = std::max(apart, std::sqrt(dot(d, d)));
+        }
+      }
+      CHECK(apart < 1e-8 * kLength);
+    }
+    INFO("slide " << slide << ": " << lagged_work << " solves lagged, " << coupled_work << " coupled");
+    // 38 where the edges do not say how their friction changes.
+    CHECK(coupled_work < 33);
+    CHECK(lagged_work < 50);
   }
 }
 

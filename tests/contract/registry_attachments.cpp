@@ -203,14 +203,15 @@ void add_surface_contacts(std::vector<SceneCase>& out, Element element) {
   }
 }
 
-// Two bars on edge that cross at a quarter of an edge.
+// Two bars on edge that cross at a quarter of an edge, or next to its end, where rows fade out.
 void add_crossed_edges(std::vector<SceneCase>& out, Element element) {
+  double place = 0.13, lean = 0;  // flanks of different slopes have no points as near to one as to the other
   const auto bar = [&](bool upper) {
     const CellType type = element == Element::tet10 ? CellType::tet10 : CellType::tet4;
     return mapped(box({2, 1, 1}, {1, 1, 1}, type), [&](const Vec3& p) {
       const double w = 0.3;
-      const Vec3 ridge{p.x - 0.5, w * (p.y - p.z), w * (p.y + p.z - 2)};
-      return upper ? Vec3{ridge.y + 0.13, ridge.x + 0.13, -ridge.z + 0.015} : ridge;
+      const Vec3 ridge{p.x - 0.5, w * (p.y - p.z) + lean * (p.y + p.z - 2), w * (p.y + p.z - 2)};
+      return upper ? Vec3{ridge.y + place, ridge.x + place, -ridge.z + 0.015} : ridge;
     });
   };
   for (const double friction : {0.0, 0.4}) {
@@ -226,6 +227,20 @@ void add_crossed_edges(std::vector<SceneCase>& out, Element element) {
     c.mesh = bar(false);
     c.more_bodies = {bar(true)};
     c.stress_free = false;  // distances between bodies that are apart
+    out.push_back(c);
+    if (friction == 0) continue;
+    def.coupling = FrictionCoupling::coupled;
+    c.name += ", coupled";
+    c.covers = {"constraints/edge_coupling"};
+    c.effects.back() = surface_contact(def);
+    out.push_back(c);
+    def.friction = 0.003;
+    place = 0.05;
+    lean = 0.04;
+    c.mesh = bar(false);
+    c.name += ", slipping at the ends";
+    c.more_bodies = {bar(true)};
+    c.effects.back() = surface_contact(def);
     out.push_back(c);
   }
 }
