@@ -10,6 +10,8 @@ namespace {
 
 constexpr int most_failed_ventures = 3;
 constexpr int most_returns = 4;
+// A shorter step is a creep.
+constexpr double creep = 0.2;
 // Less of a reduction by a correction, and a new factorization is the better buy.
 constexpr double worthwhile = 0.3;
 
@@ -339,7 +341,7 @@ bool Newton::search(const SaddleProblem& p, std::span<Vec3> x, std::span<double>
       }
       if (accepted) break;
       // Only where backtracking would creep.
-      if (tau == 1 && parabola_minimum(tau, start, slope, value) < 0.1 && may_venture()) {
+      if (tau == 1 && parabola_minimum(tau, start, slope, value) < creep && may_venture()) {
         if (venture_.length < 1) {
           tau = venture_.length;
           value = try_step(p, tau, x, lambda, report);
@@ -520,7 +522,14 @@ bool Newton::left_all_bounds(std::span<const Vec3> x) const {
 }
 
 // At the limits; or beyond those of patience while fewer than half of the last eight steps were whole.
+// Inertia bounds the energy of an increment from below, however long it is. So a body in motion has an
+// equilibrium to arrive at, and a solve whose steps go down in the merit (no set of held rows, no lag that
+// may cycle) mostly gets there in less work than the shorter increments would take that replace it.
 bool Newton::out_of_patience(const SaddleOptions& o, int iteration, int factorizations) const {
+  constexpr int persistence = 8;
+  if (o.persistent && mass_scale_ > 0 && !system_->has_bounds() && !system_->has_lag())
+    return iteration >= persistence * o.max_iterations ||
+           factorizations >= persistence * o.max_factorizations;
   if (iteration >= o.max_iterations || factorizations >= o.max_factorizations) return true;
   if (iteration < o.patient_iterations && factorizations < o.patient_factorizations) return false;
   return std::popcount(full_steps_) < 4;

@@ -13,6 +13,8 @@ struct SaddleOptions {
   int max_factorizations = 1000;  // mending an inertia takes more than one an iteration
   // From so many on, a solve goes on only while it gets somewhere.
   int patient_iterations = 1000, patient_factorizations = 1000;
+  // A body in motion whose steps all go downhill is given several times the limits above.
+  bool persistent = false;
   // Residual force against the magnitudes that cancel in it, in the norm sqrt(sum |r_i|^2 / k_i), k_i the
   // stiffness of a node at rest plus its inertia.
   double force_tolerance = 1e-9;

@@ -269,7 +269,10 @@ World::Impl::Surroundings World::Impl::look_around(std::span<const Vec3> x, bool
 // From the trial positions and multipliers.
 SaddleReport World::Impl::solve_increment(SaddleProblem& problem, const Allowance& allowance,
                                           bool from_guess) {
+  // Persistence is for what is tried last.
   const SaddleOptions saddle = saddle_options(allowance);
+  SaddleOptions last = saddle;
+  last.persistent = allowance.persistent;
   newton->progress = nullptr;
   if (progress) {
     newton->progress = [this, t = problem.t1](int iteration, double f, double r) {
@@ -277,7 +280,8 @@ SaddleReport World::Impl::solve_increment(SaddleProblem& problem, const Allowanc
     };
   }
   count_passing(problem.increment, true);
-  SaddleReport report = newton->solve(problem, saddle, x_trial, lambda_trial);
+  SaddleReport report =
+      newton->solve(problem, from_guess || !stand_ins.empty() ? saddle : last, x_trial, lambda_trial);
   if (report.status == SaddleStatus::converged && count_passing(problem.increment, false) > 0) {
     report.status = SaddleStatus::passed_through;
   }
@@ -289,7 +293,7 @@ SaddleReport World::Impl::solve_increment(SaddleProblem& problem, const Allowanc
   if (from_guess && stuck) {
     std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
     std::copy(state.x.begin(), state.x.end(), x_trial.begin());
-    SaddleReport second = newton->solve(problem, saddle, x_trial, lambda_trial);
+    SaddleReport second = newton->solve(problem, stand_ins.empty() ? last : saddle, x_trial, lambda_trial);
     if (second.status == SaddleStatus::converged && count_passing(problem.increment, false) > 0) {
       second.status = SaddleStatus::passed_through;
     }
@@ -304,7 +308,7 @@ SaddleReport World::Impl::solve_increment(SaddleProblem& problem, const Allowanc
     if (!other.solver) continue;
     std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
     std::copy(state.x.begin(), state.x.end(), x_trial.begin());
-    SaddleReport next = solve_by(*other.solver, problem, saddle);
+    SaddleReport next = solve_by(*other.solver, problem, &other == &stand_ins.back() ? last : saddle);
     if (next.status == SaddleStatus::converged && count_passing(problem.increment, false) > 0) {
       next.status = SaddleStatus::passed_through;
     }

@@ -80,6 +80,8 @@ struct World::Impl {
     bool keep_unfinished = false;
     // Beyond these a solve must get somewhere; 0: as above.
     int patient_iterations = 0, patient_factorizations = 0;
+    // Bodies in motion go on beyond all of these while that leads downhill.
+    bool persistent = false;
   };
   SaddleProblem problem_at(double t);
   bool look_back(double t, double h);

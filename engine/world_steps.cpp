@@ -262,10 +262,13 @@ StepReport World::advance(double h) {
     const bool last_chance = 0.5 * dt < w.options.smallest_fraction * h;
     const int patience = successes > 0 ? 40 : 25, patience_for_factors = successes > 0 ? 70 : 35;
     if (careful) w.state_before = w.state;
-    const SaddleReport r =
-        w.attempt(dt, last_chance ? Impl::Allowance{w.options.max_iterations, 2 * w.options.max_iterations}
-                                  : Impl::Allowance{w.options.max_iterations, 3 * w.options.max_iterations,
-                                                    false, patience, patience_for_factors});
+    Impl::Allowance allowance{w.options.max_iterations, (last_chance ? 2 : 3) * w.options.max_iterations};
+    if (!last_chance) {
+      allowance.patient_iterations = patience;
+      allowance.patient_factorizations = patience_for_factors;
+    }
+    allowance.persistent = true;
+    const SaddleReport r = w.attempt(dt, allowance);
     accumulate(report, r);
     if (r.status == SaddleStatus::converged && careful) {
       const double error = w.estimate_error(dt);

@@ -67,6 +67,16 @@ TEST_CASE("long prescribed ways are made within one increment at nu 0.5") {
   all_solved({"compression", settings(0.5, 0, 1, kEdge, Method::dual_gradients)}, 1, true);
 }
 
+TEST_CASE("a body in motion gets past a fold without shorter increments at nu 0.5") {
+  all_solved({"compression", settings(0.5, 0.033, 1, Element::tet10)}, 2, true);
+  all_solved({"compression", settings(0.5, 0.1, 1, Element::tet10)}, 1, true);
+}
+
+TEST_CASE("stiff parts turn within one increment at nu 0.5") {
+  all_solved({"stiffness_jump", settings(0.5, 0, 10, kEdge)}, 1, true);
+  all_solved({"stiffness_jump", settings(0.5, 0, 3, Element::tet10)}, 1, true);
+}
+
 TEST_CASE("balls bounce without a node below the floor and without energy from nowhere") {
   for (const Element element : {kTet4, kEdge, Element::tet10})
     all_solved({"ball", settings(0.5, 8e-3, 1, element)}, 1);
