@@ -526,7 +526,7 @@ bool Newton::left_all_bounds(std::span<const Vec3> x) const {
 // equilibrium to arrive at, and a solve whose steps go down in the merit (no set of held rows, no lag that
 // may cycle) mostly gets there in less work than the shorter increments would take that replace it.
 bool Newton::out_of_patience(const SaddleOptions& o, int iteration, int factorizations) const {
-  constexpr int persistence = 8;
+  constexpr int persistence = 5;
   if (o.persistent && mass_scale_ > 0 && !system_->has_bounds() && !system_->has_lag())
     return iteration >= persistence * o.max_iterations ||
            factorizations >= persistence * o.max_factorizations;

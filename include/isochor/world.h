@@ -97,7 +97,7 @@ struct WorldOptions {
   Solver solver = Solver::automatic;
   int sweeps = 20;          // of Method::position_based, a step
   int threads = 0;          // 0: all the machine has. The answer does not depend on it.
-  int max_iterations = 60;  // Newton iterations a step
+  int max_iterations = 60;  // Newton iterations a step; advance() may take five times as many in dynamics
   // Hessians of elements in Newton's method. Exact ones, made definite only where the matrix of a whole step
   // has the wrong inertia, need the fewest iterations; definite ones from the start lead other ways out of
   // crushed and tangled shapes (docs/elements.md).
