@@ -228,7 +228,14 @@ SaddleOptions World::Impl::saddle_options(const Allowance& allowance) const {
   saddle.patient_factorizations =
       allowance.patient_factorizations > 0 ? allowance.patient_factorizations : allowance.factorizations;
   saddle.definiteness = options.definiteness;
+  // Conjugate gradients leave an error that counts where a body is soft, as next to a limit point; factors go
+  // well below the tolerance with their last iteration.
+  const bool by_gradients = !system->dual_rows().empty() && (options.method == Method::dual_gradients ||
+                                                             options.method == Method::augmented_gradients);
+  constexpr double close_to_rounding = 1e-11;
   saddle.force_tolerance = options.force_tolerance;
+  if (by_gradients && options.force_tolerance > close_to_rounding)
+    saddle.force_tolerance = std::max(0.1 * options.force_tolerance, close_to_rounding);
   saddle.row_tolerance = options.row_tolerance;
   return saddle;
 }
