@@ -68,8 +68,7 @@ TEST_CASE("long prescribed ways are made within one increment at nu 0.5") {
 }
 
 TEST_CASE("a body in motion gets past a fold without shorter increments at nu 0.5") {
-  all_solved({"compression", settings(0.5, 0.033, 1, Element::tet10)}, 2, true);
-  all_solved({"compression", settings(0.5, 0.1, 1, Element::tet10)}, 1, true);
+  all_solved({"compression", settings(0.5, 0.033, 1, Element::tet10)}, 1, true);
 }
 
 TEST_CASE("stiff parts turn within one increment at nu 0.5") {
