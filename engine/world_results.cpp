@@ -218,7 +218,7 @@ void put(std::vector<std::byte>& out, const T* data, std::size_t count) {
 template <class T>
 bool take(std::span<const std::byte>& in, T* data, std::size_t count) {
   if (in.size() < count * sizeof(T)) return false;
-  std::memcpy(data, in.data(), count * sizeof(T));
+  if (count > 0) std::memcpy(data, in.data(), count * sizeof(T));  // of nothing there is no address
   in = in.subspan(count * sizeof(T));
   return true;
 }
