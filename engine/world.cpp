@@ -228,14 +228,7 @@ SaddleOptions World::Impl::saddle_options(const Allowance& allowance) const {
   saddle.patient_factorizations =
       allowance.patient_factorizations > 0 ? allowance.patient_factorizations : allowance.factorizations;
   saddle.definiteness = options.definiteness;
-  // Conjugate gradients leave an error that counts where a body is soft, as next to a limit point; factors go
-  // well below the tolerance with their last iteration.
-  const bool by_gradients = !system->dual_rows().empty() && (options.method == Method::dual_gradients ||
-                                                             options.method == Method::augmented_gradients);
-  constexpr double close_to_rounding = 1e-11;
   saddle.force_tolerance = options.force_tolerance;
-  if (by_gradients && options.force_tolerance > close_to_rounding)
-    saddle.force_tolerance = std::max(0.1 * options.force_tolerance, close_to_rounding);
   saddle.row_tolerance = options.row_tolerance;
   return saddle;
 }
@@ -322,7 +315,33 @@ SaddleReport World::Impl::solve_increment(SaddleProblem& problem, const Allowanc
     next.add_work(report);
     report = std::move(next);
   }
+  if (report.status == SaddleStatus::converged) refine_gradients(problem, saddle, report);
   return report;
+}
+
+// Conjugate gradients leave an error that counts where a body is soft, as next to a limit point; factors go
+// well below the tolerance with their last iteration. A few more iterations of the former make up for that,
+// and where they do not, the solution stays as it was.
+void World::Impl::refine_gradients(const SaddleProblem& problem, SaddleOptions saddle, SaddleReport& report) {
+  if (system->dual_rows().empty() ||
+      (options.method != Method::dual_gradients && options.method != Method::augmented_gradients))
+    return;
+  const std::vector<Vec3> x = x_trial;
+  const std::vector<double> lambda = lambda_trial;
+  const SaddleOptions as_asked = saddle;
+  saddle.force_tolerance *= 0.1;
+  saddle.max_iterations = saddle.patient_iterations = 2;
+  const SaddleReport finer = newton->solve(problem, saddle, x_trial, lambda_trial);
+  report.add_work(finer);
+  if (finer.status == SaddleStatus::converged) {
+    report.force_residual = finer.force_residual;
+    report.row_residual = finer.row_residual;
+    return;
+  }
+  std::copy(x.begin(), x.end(), x_trial.begin());
+  std::copy(lambda.begin(), lambda.end(), lambda_trial.begin());
+  // In balance already: this evaluates the state and leaves it.
+  newton->solve(problem, as_asked, x_trial, lambda_trial);
 }
 
 // The method of this world ends an increment that another one solved: its assembly holds the state, and its

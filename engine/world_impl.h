@@ -87,6 +87,7 @@ struct World::Impl {
   bool look_back(double t, double h);
   SaddleOptions saddle_options(const Allowance& allowance) const;
   SaddleReport attempt(double h, const Allowance& allowance);
+  void refine_gradients(const SaddleProblem& problem, SaddleOptions saddle, SaddleReport& report);
   SaddleReport solve_increment(SaddleProblem& problem, const Allowance& allowance, bool from_guess);
   std::unique_ptr<SaddlePoint> make_stand_in(Method other) const;
   SaddleReport solve_by(SaddlePoint& other, SaddleProblem& problem, const SaddleOptions& saddle);
