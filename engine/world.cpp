@@ -321,16 +321,17 @@ SaddleReport World::Impl::solve_increment(SaddleProblem& problem, const Allowanc
 
 // Conjugate gradients leave an error that counts where a body is soft, as next to a limit point; factors go
 // well below the tolerance with their last iteration. A few more iterations of the former make up for that,
-// and where they do not, the solution stays as it was.
+// and where they do not, or a budget leaves none, the solution stays as it was.
 void World::Impl::refine_gradients(const SaddleProblem& problem, SaddleOptions saddle, SaddleReport& report) {
   if (system->dual_rows().empty() ||
       (options.method != Method::dual_gradients && options.method != Method::augmented_gradients))
     return;
-  const std::vector<Vec3> x = x_trial;
-  const std::vector<double> lambda = lambda_trial;
   const SaddleOptions as_asked = saddle;
   saddle.force_tolerance *= 0.1;
-  saddle.max_iterations = saddle.patient_iterations = 2;
+  saddle.max_iterations = saddle.patient_iterations = std::min(2, saddle.max_iterations - report.iterations);
+  if (saddle.max_iterations <= 0) return;
+  x_found = x_trial;
+  lambda_found = lambda_trial;
   const SaddleReport finer = newton->solve(problem, saddle, x_trial, lambda_trial);
   report.add_work(finer);
   if (finer.status == SaddleStatus::converged) {
@@ -338,8 +339,8 @@ void World::Impl::refine_gradients(const SaddleProblem& problem, SaddleOptions s
     report.row_residual = finer.row_residual;
     return;
   }
-  std::copy(x.begin(), x.end(), x_trial.begin());
-  std::copy(lambda.begin(), lambda.end(), lambda_trial.begin());
+  std::copy(x_found.begin(), x_found.end(), x_trial.begin());
+  std::copy(lambda_found.begin(), lambda_found.end(), lambda_trial.begin());
   // In balance already: this evaluates the state and leaves it.
   newton->solve(problem, as_asked, x_trial, lambda_trial);
 }

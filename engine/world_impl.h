@@ -38,6 +38,9 @@ struct World::Impl {
 
   // Data of the increment under way; taken once, at compile time.
   std::vector<Vec3> x_trial, predicted, force, position, reactions;
+  // What refine_gradients() goes back to; empty with other methods.
+  std::vector<Vec3> x_found;
+  std::vector<double> lambda_found;
   std::vector<double> weight, lambda_trial, target, prescribed,
       memory_before;  // weight: consistent nodal mass [kg]
 

@@ -88,7 +88,7 @@ Members members_of(std::span<const Index> group, Index groups, std::span<const s
   return m;
 }
 
-// Visits (a, b) in the lists of `from` for every b in the list of a, and makes the lists by b: ascending.
+// The lists of who lists each vertex. They come out ascending, whatever the sequence in those of `from`.
 Graph transposed(const Graph& from) {
   Graph to;
   to.start.assign(from.start.size(), 0);
