@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/turning_frame.h"
+
 namespace isochor {
 
 namespace {
@@ -42,15 +44,7 @@ Mat3 EdgeContactPool::axes(Index s, std::span<const Vec3> x) const {
   const auto& n = (*setup_->edges)[s].node;
   const Vec3 p = x[at(n[1])] - x[at(n[0])];
   const Vec3 out = cross(p, x[at(n[2])] - x[at(n[0])]) - cross(p, x[at(n[3])] - x[at(n[0])]);
-  Mat3 m;
-  if (!(dot(p, p) > 0) || !(dot(out, out) > 0)) return m;
-  const Vec3 e = (1 / norm(p)) * p, up = (1 / norm(out)) * out, beside = cross(up, e);
-  for (int i = 0; i < 3; ++i) {
-    m(i, 0) = e[i];
-    m(i, 1) = beside[i];
-    m(i, 2) = up[i];
-  }
-  return m;
+  return turning_axes(p, out);
 }
 
 Vec3 EdgeContactPool::kept_pull(Index s, std::span<const double> memory, std::span<const Vec3> x) const {

@@ -1,10 +1,9 @@
 // How the friction of EdgeContactPool changes with what it holds on to: the normal force and its weight, the
 // nearest places and the common normal, and the edge that the pull kept turns with.
 #include <algorithm>
-#include <cmath>
 
-#include "constraints/direction_rate.h"
 #include "constraints/edge_contact_pool.h"
+#include "constraints/turning_frame.h"
 
 namespace isochor {
 
@@ -20,12 +19,9 @@ Vec3 EdgeContactPool::kept_pull_rate(Index s, std::span<const double> memory, st
     if (node == 0 || node == k) way_rate[k] = node == 0 ? -rate : rate;
   }
   const Vec3 beside = way[2] - way[3], out = cross(way[1], beside);
-  if (!(dot(way[1], way[1]) > 0) || !(dot(out, out) > 0)) return {};
-  const Vec3 e = (1 / std::sqrt(dot(way[1], way[1]))) * way[1], up = (1 / std::sqrt(dot(out, out))) * out;
-  const Vec3 e_rate = direction_rate(way[1], way_rate[1]);
-  const Vec3 up_rate =
-      direction_rate(out, cross(way_rate[1], beside) + cross(way[1], way_rate[2] - way_rate[3]));
-  return m[1] * e_rate + m[2] * (cross(up_rate, e) + cross(up, e_rate)) + m[3] * up_rate;
+  return turning_rate(way[1], way_rate[1], out,
+                      cross(way_rate[1], beside) + cross(way[1], way_rate[2] - way_rate[3]),
+                      {m[1], m[2], m[3]});
 }
 
 void EdgeContactPool::lag_derivatives(const StencilRequest& q, const LagSlots& slots) const {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "constraints/turning_frame.h"
+
 namespace isochor {
 
 namespace {
@@ -57,16 +59,7 @@ double SurfaceContactPool::share(Index s, std::size_t i, const PatchPoint& near)
 Mat3 SurfaceContactPool::axes(Index s, std::span<const Vec3> x) const {
   const auto& c = setup_->skin->corners(setup_->skin->triangles_at(s)[0]);
   const Vec3 u = x[at(c[1])] - x[at(c[0])], v = x[at(c[2])] - x[at(c[0])];
-  const Vec3 area = cross(u, v);
-  Mat3 out;
-  if (!(dot(area, area) > 0)) return out;
-  const Vec3 e = (1 / norm(u)) * u, n = (1 / norm(area)) * area, m = cross(n, e);
-  for (int i = 0; i < 3; ++i) {
-    out(i, 0) = e[i];
-    out(i, 1) = m[i];
-    out(i, 2) = n[i];
-  }
-  return out;
+  return turning_axes(u, cross(u, v));
 }
 
 Vec3 SurfaceContactPool::kept_pull(Index s, std::span<const double> memory, std::span<const Vec3> x) const {

@@ -3,18 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/direction_rate.h"
 #include "constraints/surface_contact_pool.h"
+#include "constraints/turning_frame.h"
 
 namespace isochor {
-
-namespace {
-
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
-}  // namespace
 
 // As the axes of the triangle turn when `node` moves.
 Vec3 SurfaceContactPool::kept_pull_rate(Index s, std::span<const double> memory, std::span<const Vec3> x,
@@ -24,15 +16,11 @@ Vec3 SurfaceContactPool::kept_pull_rate(Index s, std::span<const double> memory,
   if (m[1] == 0 && m[2] == 0 && m[3] == 0) return {};
   const auto& c = setup_->skin->corners(setup_->skin->triangles_at(s)[0]);
   const Vec3 u = x[at(c[1])] - x[at(c[0])], v = x[at(c[2])] - x[at(c[0])], area = cross(u, v);
-  if (!(dot(area, area) > 0)) return {};
   Vec3 u_rate{}, v_rate{};
   if (node == c[0]) u_rate = v_rate = -rate;
   if (node == c[1]) u_rate = rate;
   if (node == c[2]) v_rate = rate;
-  const Vec3 e = (1 / norm(u)) * u, n = (1 / norm(area)) * area;
-  const Vec3 e_rate = direction_rate(u, u_rate),
-             n_rate = direction_rate(area, cross(u_rate, v) + cross(u, v_rate));
-  return m[1] * e_rate + m[2] * (cross(n_rate, e) + cross(n, e_rate)) + m[3] * n_rate;
+  return turning_rate(u, u_rate, area, cross(u_rate, v) + cross(u, v_rate), {m[1], m[2], m[3]});
 }
 
 void SurfaceContactPool::lag_derivatives(const StencilRequest& q, const LagSlots& slots) const {
