@@ -53,8 +53,6 @@ void ContactPool::lag_derivatives(const StencilRequest& q, const LagSlots& slots
     const std::size_t n = nodes_[s].size();
     Mat3* blocks = slots.block.data() + slots.block_offset[at(s)];
     Vec3* column = slots.column.data() + nodes_.offset[at(s)];
-    std::fill_n(blocks, n * n, Mat3{});
-    std::fill_n(column, n, Vec3{});
     const Friction f = friction(q, now, s);
     if (q.lag.x.empty() || !(f.spring.limit > 0)) continue;
     const Vec3 pull = f.spring.pull(), by_multiplier = -f.mu * f.spring.pull_by_limit();

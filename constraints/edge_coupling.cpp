@@ -30,8 +30,6 @@ void EdgeContactPool::lag_derivatives(const StencilRequest& q, const LagSlots& s
     const std::size_t n = nodes.size();
     Mat3* blocks = slots.block.data() + slots.block_offset[at(s)];
     Vec3* column = slots.column.data() + nodes_.offset[at(s)];
-    std::fill_n(blocks, n * n, Mat3{});
-    std::fill_n(column, n, Vec3{});
     if (!has_partner(s) || q.lag.x.empty()) continue;
     const Friction f = friction(q, s);
     if (!(f.spring.limit > 0)) continue;

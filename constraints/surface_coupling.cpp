@@ -29,8 +29,6 @@ void SurfaceContactPool::lag_derivatives(const StencilRequest& q, const LagSlots
     const std::size_t n = nodes.size();
     Mat3* blocks = slots.block.data() + slots.block_offset[at(s)];
     Vec3* column = slots.column.data() + nodes_.offset[at(s)];
-    std::fill_n(blocks, n * n, Mat3{});
-    std::fill_n(column, n, Vec3{});
     if (!close(s) || q.lag.x.empty()) continue;
     const Friction f = friction(q, s);
     if (!(f.spring.limit > 0) || !std::isfinite(f.near.distance)) continue;

@@ -94,9 +94,9 @@ class StencilPool {
   // True when the linear systems are to know how forces change with what a pool with a lag holds on to. They
   // are unsymmetric then, and converge as Newton's method does rather than in the pace of the lag.
   virtual bool couples() const { return false; }
-  // Fills the slots of stencils [begin, end) of a pool with a lag that can tell how its forces change with
-  // what it holds on to; read by coupled systems and by corrections of lagged ones. The lag is at x, with the
-  // multipliers of the request.
+  // Fills the slots of stencils [begin, end), zero so far, of a pool with a lag that can tell how its forces
+  // change with what it holds on to; read by coupled systems and by corrections of lagged ones. The lag is at
+  // x, with the multipliers of the request.
   virtual void lag_derivatives(const StencilRequest& request, const LagSlots& slots) const {
     (void)request;
     (void)slots;

@@ -125,6 +125,13 @@ void UnsymmetricPart::evaluate(const Assembly& assembly, std::span<const Vec3> x
       StencilRequest part = whole;
       part.begin = begin;
       part.end = end;
+      const auto from = static_cast<std::size_t>(slots.block_offset[at(begin)]),
+                 to = static_cast<std::size_t>(slots.block_offset[at(end)]);
+      std::fill_n(out.block.begin() + static_cast<std::ptrdiff_t>(from), to - from, Mat3{});
+      const auto& offset = pool.nodes().offset;
+      const Index functions = pool.functions();
+      std::fill_n(out.column.begin() + functions * offset[at(begin)],
+                  functions * (offset[at(end)] - offset[at(begin)]), Vec3{});
       pool.lag_derivatives(part, out);
     });
   }
