@@ -222,18 +222,28 @@ static std::shared_ptr<const Material> for_stencils(std::shared_ptr<const Materi
   return energy;
 }
 
-// A barrier would falsify the true compression of a compressible material, so it is for the others by
-// default. Null where no cell has one. Its elements are the cells of the region, in their order.
-static std::shared_ptr<const Material> element_guard(const BodyData& body, const RegionData& region) {
+// A barrier would falsify the true compression of a compressible material; there it acts only on tets that
+// are next to turning over. Null where no cell has one. Its elements are the cells of the region, in their
+// order.
+static std::shared_ptr<const Material> element_guard(const BodyData& body, RegionData& region) {
+  constexpr double nearly_incompressible = 0.49, true_compression = 0.1;
   const MaterialModel& material = *region.material;
-  std::vector<double> stiffness;
+  std::vector<ElementGuard::Barrier> barriers;
   for (const Index c : region.cells) {
-    const double b = body.guard_stiffness.value_or(material.poisson_of(c) >= 0.49 ? 1.0 : 0.0);
-    stiffness.push_back(b * material.shear_modulus() * material.stiffness_factor(c));
+    const double b = body.guard_stiffness.value_or(1.0);
+    const bool everywhere = body.guard_stiffness || material.poisson_of(c) >= nearly_incompressible;
+    barriers.push_back(
+        {b * material.shear_modulus() * material.stiffness_factor(c),
+         everywhere ? body.guard_threshold : std::min(body.guard_threshold, true_compression)});
+    region.guarded.push_back(barriers.back().stiffness > 0 && barriers.back().threshold > 0 ? 1 : 0);
   }
-  const bool any = std::any_of(stiffness.begin(), stiffness.end(), [](double b) { return b > 0; });
-  if (!any) return nullptr;
-  return std::make_shared<ElementGuard>(std::move(stiffness), body.guard_threshold);
+  const bool any =
+      std::any_of(region.guarded.begin(), region.guarded.end(), [](std::uint8_t g) { return g != 0; });
+  if (!any) {
+    region.guarded.clear();
+    return nullptr;
+  }
+  return std::make_shared<ElementGuard>(std::move(barriers));
 }
 
 // Elastic energy and volume functions share a stencil where both live on the cell; edge patches have their

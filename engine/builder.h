@@ -100,6 +100,7 @@ struct RegionData {
   Index elastic_pool = -1;
   std::array<Index, 2> volume_pool{-1, -1};  // by VolumeStrain
   std::array<bool, 2> volume_wanted{};
+  std::vector<std::uint8_t> guarded;  // by cell: 1 where the element guard acts; empty: nowhere
 };
 
 // Volume functions over cells of several regions, beside those of each region.

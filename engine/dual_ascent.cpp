@@ -77,7 +77,7 @@ bool DualAscent::minimize(const SaddleProblem& p, const SaddleOptions& options, 
     position_gap(p, x);
     const Residuals now = measure(p, x, lambda);
     if (factored_ && now.force <= tolerance && now.position <= options.position_tolerance) return true;
-    if (cancelled && cancelled()) {
+    if (interrupted()) {
       report.status = SaddleStatus::cancelled;
       return false;
     }
@@ -92,6 +92,7 @@ bool DualAscent::minimize(const SaddleProblem& p, const SaddleOptions& options, 
       factored_ = factor(p, x, effective_, report);
       if (!factored_) {
         if (report.status == SaddleStatus::converged) report.status = SaddleStatus::singular;
+        report.status = failed_as(report.status);
         return false;
       }
       ++report.iterations;
@@ -112,7 +113,7 @@ bool DualAscent::minimize(const SaddleProblem& p, const SaddleOptions& options, 
     if (!solved && kkt_.inertia_was_wrong())
       solved = factor(p, x, effective_, report) && kkt_.solve_stiffness(rhs_, dx_, seconds_);
     if (!solved) {
-      report.status = SaddleStatus::singular;
+      report.status = failed_as(SaddleStatus::singular);
       return false;
     }
     double slope = 0, longest = 0;
@@ -153,7 +154,7 @@ bool DualAscent::minimize(const SaddleProblem& p, const SaddleOptions& options, 
       longest = venture.longest;
       tau = 0.5;
     }
-    for (int trial = 0; trial < 40 && tau > 1e-10; ++trial, tau *= 0.5) {
+    for (int trial = 0; trial < 40 && tau > 1e-10 && !interrupted(); ++trial, tau *= 0.5) {
       const double value = value_at(tau);
       // Given coordinates on their way pump work in; then a finite energy and elements that stay whole do.
       accepted =
@@ -173,7 +174,7 @@ bool DualAscent::minimize(const SaddleProblem& p, const SaddleOptions& options, 
       }
     }
     if (!accepted) {
-      report.status = SaddleStatus::line_search_failed;
+      report.status = failed_as(SaddleStatus::line_search_failed);
       return false;
     }
     std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
@@ -279,6 +280,10 @@ SaddleReport DualAscent::solve(const SaddleProblem& p, const SaddleOptions& opti
     }
     assemble_residual(p, x, lambda);
     const bool done = balanced(p, options, x, lambda, report);
+    if (!done && interrupted()) {
+      report.status = SaddleStatus::cancelled;
+      return report;
+    }
     tolerance = std::min(1e-2, 0.1 * report.force_residual);
     if (k > 0 && progress) progress(k, report.force_residual, report.row_residual);
     if (done) return report;
@@ -297,7 +302,7 @@ SaddleReport DualAscent::solve(const SaddleProblem& p, const SaddleOptions& opti
     if (!minimize(p, options, std::max(0.1 * options.force_tolerance, tolerance), x, lambda, report))
       return report;
     if (s.rows() > 0 && !climb(lambda, report)) {
-      report.status = SaddleStatus::singular;
+      report.status = failed_as(SaddleStatus::singular);
       return report;
     }
   }

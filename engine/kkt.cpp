@@ -219,6 +219,10 @@ Kkt::Outcome Kkt::eliminate_border(const Values& values, Outcome outcome) {
                                     static_cast<Eigen::Index>(nb));
   schur.setZero();
   for (std::size_t k = 0; k < nb; ++k) {
+    if (interrupted()) {
+      outcome.status = FactorStatus::interrupted;
+      return outcome;
+    }
     const auto z = std::span(border_solution_).subspan(k * size, size);
     border_column(s.bordered_rows()[k], rhs_);
     const SolveReport solved = solver_->solve(rhs_, z);
@@ -343,6 +347,12 @@ Kkt::Outcome Kkt::factor_scaled(const Values& values, StageSeconds& seconds) {
   if (outcome.negative >= 0)
     outcome.negative += static_cast<Index>(s.condensed_rows().size() + s.dual_rows().size());
   return s.bordered_rows().empty() ? outcome : eliminate_border(values, outcome);
+}
+
+void Kkt::set_interrupt(const std::function<bool()>& asked) {
+  interrupt_ = asked;
+  solver_->set_interrupt(asked);
+  if (unsymmetric_solver_) unsymmetric_solver_->set_interrupt(asked);
 }
 
 void Kkt::take_unsymmetric(std::unique_ptr<LinearSolver> solver) {

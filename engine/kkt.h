@@ -89,6 +89,9 @@ class Kkt {
   void weigh_transposed(std::span<double> v);
   std::span<const double> dual_preconditioner() const { return preconditioner_; }
 
+  // As LinearSolver::set_interrupt(), for all its solvers and its own iterations.
+  void set_interrupt(const std::function<bool()>& asked);
+
   LinearSolver& linear_solver() { return *solver_; }
   double residual() const { return residual_; }  // of the last solve, relative
   // The last solve showed that the inertia told by factor() was wrong; another factor() tells the right one.
@@ -131,6 +134,9 @@ class Kkt {
   Outcome eliminate_border(const Values& values, Outcome outcome);
   void border_column(Index row, std::span<double> column) const;
   double compliance_of(const Values& values, std::size_t entry) const;
+
+  std::function<bool()> interrupt_;
+  bool interrupted() const { return interrupt_ && interrupt_(); }
 
   std::shared_ptr<const System> system_;
   const Parallel& parallel_;

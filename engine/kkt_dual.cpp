@@ -128,7 +128,7 @@ bool Kkt::solve_dual(std::span<const double> row_rhs, StageSeconds& seconds) {
   int iteration = 0;
   for (; ok && rho > dual_tolerance * dual_tolerance * start && iteration < dual_iteration_limit;
        ++iteration) {
-    ok = apply_dual(cg_p_, cg_q_, seconds);
+    ok = !interrupted() && apply_dual(cg_p_, cg_q_, seconds);
     const double curvature = dot_rows(cg_p_, cg_q_);
     // Not positive: A is not, and its factors could not tell.
     if (!ok || !(curvature > 0)) break;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -36,7 +37,7 @@ struct SymmetricPattern {
   std::int64_t nonzeros() const { return column_start.empty() ? 0 : column_start.back(); }
 };
 
-enum class FactorStatus : std::uint8_t { ok, singular, not_finite, out_of_memory, failed };
+enum class FactorStatus : std::uint8_t { ok, singular, not_finite, out_of_memory, failed, interrupted };
 
 struct FactorReport {
   FactorStatus status = FactorStatus::ok;
@@ -74,6 +75,9 @@ class LinearSolver {
   virtual void set_parallel(const Parallel& parallel) { (void)parallel; }
   virtual bool wants_geometry() const { return false; }
   virtual void set_geometry(std::vector<UnknownGeometry> geometry) { (void)geometry; }
+  // Asked often during long work, from any thread that works; true: give up, which factor() reports as
+  // `interrupted` and solve() as not ok. Work of a library that cannot be asked ends first.
+  virtual void set_interrupt(std::function<bool()> asked) { interrupt_ = std::move(asked); }
   // Before every factor() whose matrix is S A S: the diagonal of S, alive until the next call.
   virtual void set_scale(std::span<const double> scale) { (void)scale; }
   // A new saddle point: what was learned from the matrices of earlier ones is forgotten, so that a run does
@@ -94,6 +98,13 @@ class LinearSolver {
     (void)x;
     return false;
   }
+
+ protected:
+  bool interrupted() const { return interrupt_ && interrupt_(); }
+  const std::function<bool()>& interrupt() const { return interrupt_; }
+
+ private:
+  std::function<bool()> interrupt_;
 };
 
 enum class SolverKind : std::uint8_t {

@@ -96,7 +96,7 @@ bool Newton::mend_direction(const SaddleProblem& p, std::span<const Vec3> x, std
       shift_ = shift;
       return true;
     }
-    if (report.status == SaddleStatus::out_of_memory) return false;
+    if (gave_up(report)) return false;
   }
   {
     const Stopwatch watch(seconds_.evaluate);
@@ -106,7 +106,7 @@ bool Newton::mend_direction(const SaddleProblem& p, std::span<const Vec3> x, std
   ++report.projected;
   for (double shift = 0; shift < 1e3; shift = std::max(1e-3, 30 * shift)) {
     if (works(shift)) return true;
-    if (report.status == SaddleStatus::out_of_memory) return false;
+    if (gave_up(report)) return false;
   }
   if (report.message.empty()) report.message = "the linear solver found no direction of descent";
   return false;
@@ -331,6 +331,7 @@ bool Newton::search(const SaddleProblem& p, std::span<Vec3> x, std::span<double>
   double value = 0;
   bool accepted = false;
   for (int trial = 0; trial < 40 && tau > 1e-10; ++trial) {
+    if (interrupted()) return false;
     value = try_step(p, tau, x, lambda, report);
     if (std::isfinite(value)) {
       accepted = value <= start + 1e-4 * tau * slope;
@@ -539,7 +540,7 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
                            std::span<double> lambda) {
   SaddleReport report;
   const auto fail = [&](SaddleStatus status) {
-    report.status = status;
+    report.status = failed_as(status);
     return report;
   };
   if (!all_finite(p)) return fail(SaddleStatus::not_finite);
@@ -557,7 +558,7 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     if (iteration == 0 && !std::isfinite(assembly_.energy())) return fail(SaddleStatus::not_finite);
     position_gap(p, x);
     rest_gap(report);
-    if (cancelled && cancelled()) return fail(SaddleStatus::cancelled);
+    if (interrupted()) return fail(SaddleStatus::cancelled);
     if (out_of_patience(options, iteration, report.factorizations))
       return fail(SaddleStatus::iteration_limit);
     // A state that is already in balance stays to the last bit.

@@ -116,7 +116,7 @@ SaddleReport PathFollower::follow(const ProblemAt& problem_at, double length, do
   clamp(trial_.lambda);
   double first = -1;
   for (int iteration = 0;; ++iteration) {
-    if (cancelled && cancelled()) return fail(SaddleStatus::cancelled);
+    if (interrupted()) return fail(SaddleStatus::cancelled);
     if (!factor_here(problem_at, trial_.t, trial_.x, trial_.lambda, report)) return report;
     if (!std::isfinite(assembly_.energy())) return fail(SaddleStatus::line_search_failed);
     const SaddleProblem p = problem_at(trial_.t);

@@ -260,7 +260,7 @@ SaddleReport PositionBased::solve(const SaddleProblem& p, const SaddleOptions& o
   std::fill(energy_strength_.begin(), energy_strength_.end(), 0.0);
   clamp(lambda);
   for (int sweep = 0; sweep < sweeps_; ++sweep) {
-    if (cancelled && cancelled()) return fail(SaddleStatus::cancelled);
+    if (interrupted()) return fail(SaddleStatus::cancelled);
     for (std::size_t c = 0; c + 1 < color_start_.size(); ++c) {
       const std::size_t first = color_start_[c];
       parallel_.run(static_cast<Index>(color_start_[c + 1] - first), 32, [&](Index b, Index e) {

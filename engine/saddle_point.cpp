@@ -52,6 +52,8 @@ std::string_view to_string(SaddleStatus status) {
       return "out of memory";
     case SaddleStatus::passed_through:
       return "nodes passed through an obstacle";
+    case SaddleStatus::inadmissible:
+      return "the solution is no admissible state";
   }
   return "unknown";
 }
@@ -110,6 +112,11 @@ double SaddlePoint::apply_laws(const SaddleProblem& p, std::span<const double> l
     for (std::size_t r = 0; r < rows; ++r) energy += l[r] * strain[r];
   }
   return energy;
+}
+
+void SaddlePoint::set_interrupt(std::function<bool()> asked) {
+  kkt_.set_interrupt(asked);
+  cancelled_ = std::move(asked);
 }
 
 void SaddlePoint::clamp(std::span<double> lambda) const {
@@ -207,31 +214,10 @@ void SaddlePoint::row_residual(const SaddleProblem& p, std::span<const double> l
   }
 }
 
-SaddlePoint::Residuals SaddlePoint::measure(const SaddleProblem& p, std::span<const Vec3> x,
-                                            std::span<const double> lambda) const {
+SaddlePoint::RowResiduals SaddlePoint::measure_rows(const SaddleProblem& p, std::span<const Vec3> x,
+                                                    std::span<const double> lambda) const {
   const System& s = *system_;
-  double force = 0, reference = 0, row = 0, position = 0;
-  // Far from the origin, coordinates have fewer digits to tell a deformation by.
-  double farthest = 0;
-  for (const Vec3& at_node : x) farthest = std::max(farthest, dot(at_node, at_node));
-  const double floor = 1e-6 * std::max(s.length(), std::sqrt(farthest));
-  for (Index i = 0; i < s.nodes(); ++i) {
-    const double k = stiffness_[at(i)];
-    if (k <= 0) continue;
-    Vec3 free = r_[at(i)];
-    const Index b = s.basis_of()[at(i)];
-    if (b >= 0) {
-      const FreeBasis& basis = s.free_bases()[at(b)];
-      const Vec3 q = transposed_times(basis.directions, free);
-      double sum = 0;
-      for (int c = 0; c < basis.count; ++c) sum += q[c] * q[c];
-      force += sum / k;
-    } else {
-      force += dot(free, free) / k;
-    }
-    const double size = std::max(magnitude_[at(i)], k * floor);
-    reference += size * size / k;
-  }
+  double row = 0, position = 0;
   if (s.has_bounds()) {
     // What the projection leaves over: zero when the row is met, or when its multiplier sits at the bound
     // that theta pushes it against.
@@ -253,8 +239,37 @@ SaddlePoint::Residuals SaddlePoint::measure(const SaddleProblem& p, std::span<co
       for (int c = basis.count; c < 3; ++c) position = std::max(position, std::abs(q[c]));
     }
   }
+  return {row, s.length() > 0 ? position / s.length() : position};
+}
+
+SaddlePoint::Residuals SaddlePoint::measure(const SaddleProblem& p, std::span<const Vec3> x,
+                                            std::span<const double> lambda) const {
+  const System& s = *system_;
+  double force = 0, reference = 0;
+  // Far from the origin, coordinates have fewer digits to tell a deformation by.
+  double farthest = 0;
+  for (const Vec3& at_node : x) farthest = std::max(farthest, dot(at_node, at_node));
+  const double floor = 1e-6 * std::max(s.length(), std::sqrt(farthest));
+  for (Index i = 0; i < s.nodes(); ++i) {
+    const double k = stiffness_[at(i)];
+    if (k <= 0) continue;
+    Vec3 free = r_[at(i)];
+    const Index b = s.basis_of()[at(i)];
+    if (b >= 0) {
+      const FreeBasis& basis = s.free_bases()[at(b)];
+      const Vec3 q = transposed_times(basis.directions, free);
+      double sum = 0;
+      for (int c = 0; c < basis.count; ++c) sum += q[c] * q[c];
+      force += sum / k;
+    } else {
+      force += dot(free, free) / k;
+    }
+    const double size = std::max(magnitude_[at(i)], k * floor);
+    reference += size * size / k;
+  }
   const double relative = reference > 0 ? std::sqrt(force / reference) : 0;
-  return {relative, row, s.length() > 0 ? position / s.length() : position};
+  const RowResiduals rows = measure_rows(p, x, lambda);
+  return {relative, rows.row, rows.position};
 }
 
 // Writes the residuals of the last evaluation into the report and says whether they are within tolerance.
@@ -264,6 +279,30 @@ bool SaddlePoint::balanced(const SaddleProblem& p, const SaddleOptions& o, std::
   report.force_residual = r.force;
   report.row_residual = r.row;
   return r.force <= o.force_tolerance && r.row <= o.row_tolerance && r.position <= o.position_tolerance;
+}
+
+SaddlePoint::Stored SaddlePoint::stored(const SaddleProblem& p, std::span<const Vec3> x,
+                                        std::span<const double> lambda) const {
+  constexpr double rows_met = 1e-8, positions_met = 1e-11;
+  Stored s;
+  const double compliance = compliance_energy(*system_, lambda);
+  s.energy = potential(p, x) - inertia_energy_ + compliance;
+  if (!system_->laws().empty()) s.energy += law_energy_;
+  s.elastic = assembly_.absolute_energy() + compliance;
+  s.noise = 1e-12 * potential_magnitude(p, x);
+  const RowResiduals rows = measure_rows(p, x, lambda);
+  s.row = rows.row;
+  s.met = rows.row <= rows_met && rows.position <= positions_met;
+  return s;
+}
+
+SaddlePoint::Stored SaddlePoint::stored_at(const SaddleProblem& p, std::span<const Vec3> x,
+                                           std::span<const double> lambda) {
+  assembly_.evaluate(Want::value, Definiteness::exact, x, lambda, p.prescribed);
+  assembly_.prescribed_row_values(prescribed_phi_);
+  row_residual(p, lambda);
+  inertia_energy_ = 0;
+  return stored(p, x, lambda);
 }
 
 void SaddlePoint::add_inertia_of_gap(std::span<Vec3> y) {
@@ -289,29 +328,32 @@ void SaddlePoint::position_gap(const SaddleProblem& p, std::span<const Vec3> x) 
 }
 
 // Assembles and factors; mends a wrong inertia by a shift of the displacement block, small at first, and when
-// that grows out of proportion by the stencils' projected Hessians.
+// that grows out of proportion by the stencils' projected Hessians. Gives up at once where the matrix is
+// singular whatever the shift: then it is the rows that depend on each other.
 bool SaddlePoint::factor(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
                          SaddleReport& report) {
   mended_ = false;
   if (factor_shifted(p.mass_scale, 0, report)) return true;
-  if (report.status == SaddleStatus::out_of_memory) return false;
+  if (gave_up(report)) return false;
   mended_ = true;
-  // Several bounded rows may ask the same of the same nodes (two obstacles side by side): then their
-  // multipliers are not unique, and a trace of compliance picks some. It slows the iteration by as little.
-  if (system_->has_bounds() && singular_ && trace_ == 0) {
-    trace_ = 1e-8;
-    if (factor_shifted(p.mass_scale, 0, report)) return true;
-    if (report.status == SaddleStatus::out_of_memory) return false;
-  }
+  if (system_->has_bounds() && singular_ && add_trace(p.mass_scale, report)) return true;
+  if (gave_up(report)) return false;
   ++report.shifted;
   // Starting from a third of what the last wrong inertia took finds the size in one or two trials.
   double shift = shift_ > 0 ? std::max(smallest_shift, shift_ / 3) : 1e-3;
+  constexpr int most_singular = 2;
+  int singular = singular_ ? 1 : 0;
   for (; shift < 1; shift *= 6) {
     if (factor_shifted(p.mass_scale, shift, report)) {
       shift_ = shift;
       return true;
     }
-    if (report.status == SaddleStatus::out_of_memory) return false;
+    singular = singular_ ? singular + 1 : 0;
+    if (gave_up(report)) return false;
+    if (singular > most_singular) {
+      report.status = SaddleStatus::singular;
+      return false;
+    }
   }
   {
     const Stopwatch watch(seconds_.evaluate);
@@ -321,10 +363,29 @@ bool SaddlePoint::factor(const SaddleProblem& p, std::span<const Vec3> x, std::s
   ++report.projected;
   for (shift = 0; shift < 1e3; shift = std::max(1e-3, 30 * shift)) {
     if (factor_shifted(p.mass_scale, shift, report)) return true;
-    if (report.status == SaddleStatus::out_of_memory) return false;
+    if (gave_up(report)) return false;
   }
   report.status = SaddleStatus::singular;
   return false;
+}
+
+// Several bounded rows may ask the same of the same nodes (two obstacles side by side, a flat cell all of
+// whose nodes touch): then their multipliers are not unique, and a trace of compliance in the matrix picks
+// some. It slows the iteration by as little, and is as large as it has to be.
+bool SaddlePoint::add_trace(double mass_scale, SaddleReport& report) {
+  constexpr double smallest = 1e-8, largest = 1e-2;
+  while (singular_ && trace_ < largest) {
+    trace_ = trace_ == 0 ? smallest : 100 * trace_;
+    if (factor_shifted(mass_scale, 0, report)) return true;
+    if (gave_up(report)) return false;
+  }
+  return false;
+}
+
+// Whether no other matrix is to be tried.
+bool SaddlePoint::gave_up(SaddleReport& report) const {
+  if (interrupted()) report.status = SaddleStatus::cancelled;
+  return report.status == SaddleStatus::out_of_memory || report.status == SaddleStatus::cancelled;
 }
 
 bool SaddlePoint::factor_shifted(double mass_scale, double shift, SaddleReport& report) {

@@ -50,6 +50,7 @@ enum class SaddleStatus : std::uint8_t {
   cancelled,
   out_of_memory,
   passed_through,  // converged, but nodes passed through what they must not
+  inadmissible,    // converged to an end that must not be a state; the message says why
 };
 std::string_view to_string(SaddleStatus status);
 
@@ -82,8 +83,8 @@ class SaddlePoint {
   virtual SaddleReport solve(const SaddleProblem& problem, const SaddleOptions& options, std::span<Vec3> x,
                              std::span<double> lambda) = 0;
 
-  // Asked once an iteration; true stops the solve.
-  std::function<bool()> cancelled;
+  // Asked often, from any thread that works; true stops the solve.
+  void set_interrupt(std::function<bool()> asked);
   // Called after every iteration: iteration number and the two residuals.
   std::function<void(int, double, double)> progress;
 
@@ -100,6 +101,18 @@ class SaddlePoint {
   int analyses() const { return kkt_.analyses(); }
   // Largest diagonal stiffness of each node at rest [N/m].
   std::span<const double> rest_stiffness() const { return rest_stiffness_; }
+  // Energy that positions and multipliers hold [J]: elastic, of compliant rows and of rows with a law, less
+  // the work of loads since rest; no inertia.
+  struct Stored {
+    double energy = 0;
+    double elastic = 0;  // magnitude of the elastic part, to compare changes with
+    double noise = 0;    // rounding error of the energy
+    double row = 0;      // residual of the rows, as SaddleReport::row_residual
+    bool met = false;    // rows and given positions are where the problem wants them
+  };
+  Stored stored_at(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda);
+  // The same of the last evaluation with its residuals, which was there: that of a solve that converged.
+  Stored stored(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda) const;
   // Internal minus load forces, plus inertia, at the last evaluation: zero at free coordinates in balance,
   // the support force on the body at given ones [N].
   std::span<const Vec3> residual() const { return r_; }
@@ -107,6 +120,9 @@ class SaddlePoint {
  protected:
   struct Residuals {
     double force, row, position;
+  };
+  struct RowResiduals {
+    double row, position;
   };
   // The following but calibrate() read the last evaluation of the assembly.
   void calibrate();
@@ -120,6 +136,8 @@ class SaddlePoint {
   void force_residual(const SaddleProblem& p, std::span<const Vec3> x);
   void row_residual(const SaddleProblem& p, std::span<const double> lambda);
   Residuals measure(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda) const;
+  RowResiduals measure_rows(const SaddleProblem& p, std::span<const Vec3> x,
+                            std::span<const double> lambda) const;
   bool balanced(const SaddleProblem& p, const SaddleOptions& o, std::span<const Vec3> x,
                 std::span<const double> lambda, SaddleReport& report) const;
   double apply_laws(const SaddleProblem& p, std::span<const double> lambda, bool tangents);
@@ -127,10 +145,18 @@ class SaddlePoint {
   bool factor(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
               SaddleReport& report);
   bool factor_shifted(double mass_scale, double shift, SaddleReport& report);
+  bool add_trace(double mass_scale, SaddleReport& report);
+  bool gave_up(SaddleReport& report) const;
+  bool interrupted() const { return cancelled_ && cancelled_(); }
+  // The status of a solve that failed: whatever the reason seems to be, if it was stopped that is it.
+  SaddleStatus failed_as(SaddleStatus status) const {
+    return interrupted() ? SaddleStatus::cancelled : status;
+  }
   // y += mass_scale M gap: the lumped part of it falls on given directions alone and is left out.
   void add_inertia_of_gap(std::span<Vec3> y);
   void position_gap(const SaddleProblem& p, std::span<const Vec3> x);
 
+  std::function<bool()> cancelled_;
   std::shared_ptr<const System> system_;
   Assembly assembly_;
   Kkt kkt_;

@@ -289,6 +289,8 @@ Result<void> check_independent_rows(const SceneFacts& facts, const std::vector<H
     for (const ComplianceEntry& e : facts.parts.row_pools[at(p)]->compliance)
       largest = std::max(largest, std::abs(e.value));
     for (const ComplianceEntry& e : facts.parts.row_pools[at(p)]->compliance) {
+      // Rows that were left out are not there.
+      if (!of_row.contains(e.row) || !of_row.contains(e.col)) continue;
       const Eigen::Index i = of_row.at(e.row), j = of_row.at(e.col);
       const double v =
           e.value / largest / (length[static_cast<std::size_t>(i)] * length[static_cast<std::size_t>(j)]);
@@ -299,11 +301,20 @@ Result<void> check_independent_rows(const SceneFacts& facts, const std::vector<H
   Eigen::SparseMatrix<double> W(count, static_cast<Eigen::Index>(column.size())), C(count, count);
   W.setFromTriplets(w.begin(), w.end());
   C.setFromTriplets(c.begin(), c.end());
-  const Eigen::SparseMatrix<double> S = Eigen::SparseMatrix<double>(W * W.transpose()) + C;
+  // An exact zero would stop the factorization and leave D and L unwritten behind it.
+  Eigen::SparseMatrix<double> rounding(count, count);
+  rounding.setIdentity();
+  const Eigen::SparseMatrix<double> S = Eigen::SparseMatrix<double>(W * W.transpose()) + C + 1e-13 * rounding;
   // A check may not cost more than the solve. Rows that couple so much are left to the solver.
   constexpr Eigen::Index kMostNonzeros = 4'000'000;
   if (S.nonZeros() > kMostNonzeros) return {};
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> ldlt(S);
+  if (ldlt.info() != Eigen::Success) {
+    std::vector<std::size_t> all(rows.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return Error{"hard rows repeat or contradict each other: " + name_rows(facts, rows, all) +
+                 "; drop some of them, or give them a compliance (nu < 0.5)"};
+  }
   const Eigen::VectorXd D = ldlt.vectorD();
   const double largest = D.maxCoeff();
   Eigen::Index zero = 0;
@@ -423,6 +434,14 @@ bool plainly_independent(const SceneFacts& facts, const std::vector<HardRow>& gr
                                 [](const auto& entry) { return std::abs(entry.second - 1) < 1e-9; });
 }
 
+// A function whose nodes are all held in all directions is what supports make it; rows over such functions
+// alone have nothing to act on and are left out (System), unless a stabilization couples them to others.
+bool is_fixed(const SceneFacts& facts, Index stencil_pool, Index item, std::span<const std::uint8_t> held) {
+  const StencilPool& stencils = *facts.parts.stencil_pools[at(stencil_pool)];
+  const auto nodes = stencils.nodes()[item / stencils.functions()];
+  return std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return held[at(n)] != 0; });
+}
+
 }  // namespace
 
 Result<void> check_hard_rows(const SceneFacts& facts) {
@@ -430,19 +449,31 @@ Result<void> check_hard_rows(const SceneFacts& facts) {
   std::vector<HardRow> rows;
   Index hard_total = 0;
   std::string names;
+  std::set<std::int64_t> fixed;  // functions of cells whose nodes are all held
+  std::vector<std::uint8_t> held(facts.parts.rest.size(), 0);
+  for (const PrescribedNode& p : facts.supports.nodes) held[at(p.node)] = p.directions == 3 ? 1 : 0;
   for (std::size_t p = 0; p < facts.parts.row_pools.size(); ++p) {
     const RowPool& pool = *facts.parts.row_pools[p];
     if (!is_hard(pool)) continue;
+    Index acting = 0;
     for (Index r = 0; r < pool.rows(); ++r) {
       HardRow row{static_cast<Index>(p), r, -1, {}};
-      for (Index k = pool.map.offset[at(r)]; k < pool.map.offset[at(r) + 1]; ++k)
-        row.terms.emplace_back(number(pool.stencil_pool, pool.map.item[at(k)]), pool.weight[at(k)]);
+      for (Index k = pool.map.offset[at(r)]; k < pool.map.offset[at(r) + 1]; ++k) {
+        const Index item = pool.map.item[at(k)];
+        const std::int64_t f = number(pool.stencil_pool, item);
+        if (pool.compliance.empty() && is_fixed(facts, pool.stencil_pool, item, held))
+          fixed.insert(f);
+        else
+          row.terms.emplace_back(f, pool.weight[at(k)]);
+      }
+      if (row.terms.empty()) continue;
+      ++acting;
       rows.push_back(std::move(row));
     }
     bool stabilized = false;
     for (const ComplianceEntry& e : pool.compliance) stabilized = stabilized || e.value != 0;
     if (!stabilized) {
-      hard_total += pool.rows();
+      hard_total += acting;
       names += (names.empty() ? "\"" : ", \"") + std::string(pool.name()) + "\"";
     }
   }
@@ -456,7 +487,10 @@ Result<void> check_hard_rows(const SceneFacts& facts) {
                  "nu < 0.5"};
   }
   if (rows.empty()) return {};
-  for (HardRow& fixed : fixed_volumes(facts, number)) rows.push_back(std::move(fixed));
+  for (HardRow& whole : fixed_volumes(facts, number)) {
+    std::erase_if(whole.terms, [&](const auto& term) { return fixed.contains(term.first); });
+    if (!whole.terms.empty()) rows.push_back(std::move(whole));
+  }
   for (const auto& group : connected_groups(std::move(rows))) {
     if (group.size() < 2 || plainly_independent(facts, group)) continue;
     if (auto r = check_independent_rows(facts, group); !r) return r;

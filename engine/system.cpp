@@ -330,6 +330,34 @@ class SystemCompiler {
     for (Index r = 0; r < s_->rows_; ++r) {
       if (!diagonal[at(r)]) s_->compliance_.push_back({r, r, 0.0});
     }
+    release_idle_rows();
+  }
+
+  // Hard rows whose nodes are all given in all directions have no unknown to act on: their line of the matrix
+  // would be empty. With their own metric as compliance they have a multiplier, which nothing feels but the
+  // reactions of the supports.
+  void release_idle_rows() {
+    std::vector<double> size(at(s_->rows_), 0);
+    std::vector<std::size_t> own(at(s_->rows_), 0);
+    for (std::size_t k = 0; k < s_->compliance_.size(); ++k) {
+      const ComplianceEntry& e = s_->compliance_[k];
+      size[at(e.row)] += std::abs(e.value);
+      size[at(e.col)] += std::abs(e.value);
+      if (e.row == e.col) own[at(e.row)] = k;
+    }
+    for (const auto& [pool, entry] : s_->laws_) {
+      const auto first = s_->first_row_[at(pool)], count = s_->parts_.row_pools[at(pool)]->rows();
+      std::fill_n(size.begin() + first, count, 1.0);
+    }
+    std::vector<std::uint8_t> acts(at(s_->rows_), 0);
+    for (const auto& [row, node] : s_->jacobian_ends_) {
+      if (s_->first_unknown_[at(node) + 1] > s_->first_unknown_[at(node)]) acts[at(row)] = 1;
+    }
+    for (Index r = 0; r < s_->rows_; ++r) {
+      if (acts[at(r)] || size[at(r)] > 0) continue;
+      s_->compliance_[own[at(r)]].value = s_->row_metric_[at(r)];
+      s_->idle_rows_.push_back(r);
+    }
   }
 
   void collect_bounds_and_memory() {

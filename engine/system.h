@@ -54,6 +54,8 @@ class System {
   Index free_unknowns() const { return first_unknown_.back(); }
   Index rows() const { return rows_; }                        // compliant: unknowns of the system
   Index prescribed_rows() const { return prescribed_rows_; }  // their multipliers are data
+  // Compliant rows without compliance that no free coordinate enters: given a compliance of their own.
+  std::span<const Index> idle_rows() const { return idle_rows_; }
   std::uint64_t layout() const { return layout_; }
   double length() const { return length_; }  // diagonal of the rest bounding box [m]
 
@@ -153,6 +155,7 @@ class System {
   std::vector<ComplianceEntry> compliance_;
   std::vector<double> block_mass_, row_metric_, row_measure_, row_lower_, row_upper_, row_overshoot_;
   std::vector<LawPlace> laws_;
+  std::vector<Index> idle_rows_;
   std::vector<Index> row_unknown_, kept_rows_, condensed_rows_, bordered_rows_, dual_rows_, filled_rows_;
   std::vector<std::size_t> row_jacobian_begin_, diagonal_compliance_, dual_compliance_;
   std::vector<std::int64_t> filled_place_;

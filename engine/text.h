@@ -1,4 +1,5 @@
-// Numbers in messages: as few digits as tell them apart from their neighbors at a glance, whatever their size.
+// Numbers in messages: as few digits as tell them apart from their neighbors at a glance, whatever their
+// size.
 #pragma once
 
 #include <cstdio>

@@ -19,6 +19,12 @@ class TimeScheme {
   virtual int order() const { return 2; }
   virtual double error_constant() const { return 1.0 / 6; }
 
+  // Energy that an increment may gain from nothing, relative to what moves and is stored, before its end is
+  // refused. Implicit Euler promises next to
+  // none; the others keep energy for linear bodies in motion, and may gain
+  // it without end where large rotations, impacts or long steps break what their proofs assume.
+  virtual double largest_energy_gain() const { return 0.05; }
+
   // Numbers that the scheme keeps between steps, beside positions and velocities; all zero at the start,
   // which a scheme takes as having no past.
   virtual std::size_t memory(std::size_t nodes) const {

@@ -145,7 +145,7 @@ SaddleReport UnsymmetricNewton::solve(const SaddleProblem& p, const SaddleOption
                                       std::span<double> lambda) {
   SaddleReport report;
   const auto fail = [&](SaddleStatus status) {
-    report.status = status;
+    report.status = failed_as(status);
     return report;
   };
   if (!all_finite(p)) return fail(SaddleStatus::not_finite);
@@ -162,7 +162,7 @@ SaddleReport UnsymmetricNewton::solve(const SaddleProblem& p, const SaddleOption
     evaluate_here(p, x, lambda);
     if (iteration == 0 && !std::isfinite(assembly_.energy())) return fail(SaddleStatus::not_finite);
     position_gap(p, x);
-    if (cancelled && cancelled()) return fail(SaddleStatus::cancelled);
+    if (interrupted()) return fail(SaddleStatus::cancelled);
     if (report.iterations >= std::min(options.max_iterations, options.patient_iterations) ||
         report.factorizations >= std::min(options.max_factorizations, options.patient_factorizations))
       return fail(SaddleStatus::iteration_limit);
@@ -174,7 +174,7 @@ SaddleReport UnsymmetricNewton::solve(const SaddleProblem& p, const SaddleOption
     if (holding && held >= stalls && (settled || held >= longest_hold)) holding = false;
     part_->evaluate(assembly_, x);
     if (part_->vanishes()) {
-      if (!lagged_step(p, x, lambda, report)) return report;
+      if (!lagged_step(p, x, lambda, report)) return fail(report.status);
     } else if (holding || !coupled_step(p, options, x, lambda, report)) {
       if (!holding) {
         holding = true;
@@ -185,7 +185,7 @@ SaddleReport UnsymmetricNewton::solve(const SaddleProblem& p, const SaddleOption
       }
       ++held;
       ++report.lagged;
-      if (!lagged_step(p, x, lambda, report)) return report;
+      if (!lagged_step(p, x, lambda, report)) return fail(report.status);
     }
     const bool done = balanced(p, options, x, lambda, report);
     if (progress) progress(report.iterations, report.force_residual, report.row_residual);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <map>
 
 #include "engine/builder.h"
 #include "engine/newton.h"
@@ -101,8 +102,33 @@ Result<void> World::Impl::compile_once() {
   auto parts = builder.finish(!options.scheme->has_inertia());
   if (!parts) return Error{parts.error()};
   if (auto r = make_method(std::move(parts).value()); !r) return r;
+  tell_idle_rows();
   allocate();
   return {};
+}
+
+// Rows that supports leave nothing to do, by the effect that they are of.
+void World::Impl::tell_idle_rows() {
+  std::map<std::string, std::pair<Index, Index>> of_pool;  // idle rows, all rows
+  const auto& pools = system->parts().row_pools;
+  for (Index p = 0; p < static_cast<Index>(pools.size()); ++p) {
+    const RowPool& pool = *pools[at(p)];
+    if (pool.law != RowLaw::compliant) continue;
+    const auto first = system->first_row(p);
+    const auto idle = std::count_if(system->idle_rows().begin(), system->idle_rows().end(),
+                                    [&](Index r) { return r >= first && r < first + pool.rows(); });
+    auto& [count, all] = of_pool[std::string(pool.name())];
+    count += static_cast<Index>(idle);
+    all += pool.rows();
+  }
+  for (const auto& [name, counts] : of_pool) {
+    if (counts.first == 0) continue;
+    builder.warn("\"" + name + "\": " + std::to_string(counts.first) + " of its " +
+                 std::to_string(counts.second) + (counts.first == 1 ? " rows has" : " rows have") +
+                 " no free coordinate, as supports hold all nodes that enter; what supports do there is not "
+                 "held against it");
+    if (options.log) options.log(builder.warnings().back());
+  }
 }
 
 void World::Impl::allocate() {
@@ -121,10 +147,15 @@ void World::Impl::allocate() {
   prescribed.resize(at(system->prescribed_rows()));
   position.resize(system->free_bases().size());
   reactions.assign(n, Vec3{});
+  admission.emplace(builder.bodies(), parts);
+  momentum.resize(n);
+  if (system->has_bounds() || system->has_barrier())
+    for (auto& values : row_values) values.resize(at(system->rows()));
   // Last increment's length and suggestion for the next, then velocities before it.
   const std::size_t control = controls_error() ? 2 + 3 * n : 0;
   state.extra.assign(at(system->memory()) + options.scheme->memory(n) + control, 0.0);
   if (controls_error()) state_before = state;
+  if (options.scheme->has_inertia()) ahead = state;
   memory_before.resize(at(system->memory()));
   for (Index p = 0; p < static_cast<Index>(parts.row_pools.size()); ++p) {
     const RowPool& pool = *parts.row_pools[at(p)];
@@ -266,8 +297,17 @@ World::Impl::Surroundings World::Impl::look_around(std::span<const Vec3> x, bool
   return found;
 }
 
+// A solve that converged to where no state may be has failed like any other.
+void World::Impl::judge(double h, const SaddleProblem& problem, SaddleReport& report) {
+  if (report.status != SaddleStatus::converged) return;
+  if (count_passing(problem.increment, false) > 0)
+    report.status = SaddleStatus::passed_through;
+  else
+    admissible(h, problem, report);
+}
+
 // From the trial positions and multipliers.
-SaddleReport World::Impl::solve_increment(SaddleProblem& problem, const Allowance& allowance,
+SaddleReport World::Impl::solve_increment(double h, SaddleProblem& problem, const Allowance& allowance,
                                           bool from_guess) {
   // Persistence is for what is tried last.
   const SaddleOptions saddle = saddle_options(allowance);
@@ -282,21 +322,17 @@ SaddleReport World::Impl::solve_increment(SaddleProblem& problem, const Allowanc
   count_passing(problem.increment, true);
   SaddleReport report =
       newton->solve(problem, from_guess || !stand_ins.empty() ? saddle : last, x_trial, lambda_trial);
-  if (report.status == SaddleStatus::converged && count_passing(problem.increment, false) > 0) {
-    report.status = SaddleStatus::passed_through;
-  }
-  const bool out_of_budget = allowance.keep_unfinished && report.iterations > 0 &&
-                             report.status != SaddleStatus::diverged &&
-                             report.status != SaddleStatus::passed_through;
+  judge(h, problem, report);
+  const bool out_of_budget =
+      allowance.keep_unfinished && report.iterations > 0 && report.status != SaddleStatus::diverged &&
+      report.status != SaddleStatus::inadmissible && report.status != SaddleStatus::passed_through;
   const bool stuck = report.status != SaddleStatus::converged && report.status != SaddleStatus::cancelled &&
                      report.status != SaddleStatus::out_of_memory && !out_of_budget;
   if (from_guess && stuck) {
     std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
     std::copy(state.x.begin(), state.x.end(), x_trial.begin());
     SaddleReport second = newton->solve(problem, stand_ins.empty() ? last : saddle, x_trial, lambda_trial);
-    if (second.status == SaddleStatus::converged && count_passing(problem.increment, false) > 0) {
-      second.status = SaddleStatus::passed_through;
-    }
+    judge(h, problem, second);
     second.add_work(report);
     report = std::move(second);
   }
@@ -309,9 +345,7 @@ SaddleReport World::Impl::solve_increment(SaddleProblem& problem, const Allowanc
     std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
     std::copy(state.x.begin(), state.x.end(), x_trial.begin());
     SaddleReport next = solve_by(*other.solver, problem, &other == &stand_ins.back() ? last : saddle);
-    if (next.status == SaddleStatus::converged && count_passing(problem.increment, false) > 0) {
-      next.status = SaddleStatus::passed_through;
-    }
+    judge(h, problem, next);
     next.add_work(report);
     report = std::move(next);
   }
@@ -349,7 +383,6 @@ void World::Impl::refine_gradients(const SaddleProblem& problem, SaddleOptions s
 // tolerances are met.
 SaddleReport World::Impl::solve_by(SaddlePoint& other, SaddleProblem& problem, const SaddleOptions& saddle) {
   other.progress = newton->progress;
-  other.cancelled = newton->cancelled;
   const StageSeconds before = other.seconds();
   SaddleReport report = other.solve(problem, saddle, x_trial, lambda_trial);
   StageSeconds spent = other.seconds();
@@ -416,10 +449,21 @@ SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
   };
   SaddleReport report;
   Surroundings around = look_around(dynamic ? predicted : state.x, false);
+  begin_energy(problem);
   if (around.crossed > 0) from_guess = false;
   begin_at(from_guess ? predicted : state.x);
+  Allowance left = allowance;
   for (int look = 0; around.error.empty(); ++look) {
-    SaddleReport solved = solve_increment(problem, allowance, from_guess);
+    // A budget is one for all that an increment takes.
+    if (allowance.keep_unfinished) {
+      left.iterations = left.patient_iterations = allowance.iterations - report.iterations;
+      left.factorizations = left.patient_factorizations = allowance.factorizations - report.factorizations;
+      if (left.iterations <= 0 || left.factorizations <= 0) {
+        report.status = SaddleStatus::iteration_limit;
+        break;
+      }
+    }
+    SaddleReport solved = solve_increment(h, problem, left, from_guess);
     solved.add_work(report);
     report = std::move(solved);
     if (stuck_close_by(report) && look + 1 < most_looks) {
@@ -436,6 +480,7 @@ SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
       report.status = SaddleStatus::passed_through;
     if (!around.changed || report.status != SaddleStatus::converged || look + 1 == most_looks) break;
     // What was seen too late is met on the way there.
+    begin_energy(problem);
     from_guess = false;
     if (around.crossed > 0) begin_at(state.x);
   }
@@ -446,10 +491,14 @@ SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
   const bool finite_iterate = std::all_of(x_trial.begin(), x_trial.end(), [](const Vec3& x) {
     return std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z);
   });
-  bool best_there_is =
-      allowance.keep_unfinished && report.iterations > 0 && finite_iterate &&
-      report.status != SaddleStatus::diverged && report.status != SaddleStatus::passed_through &&
-      !cancel_requested.load(std::memory_order_relaxed) && count_passing(problem.increment, false) == 0;
+  bool best_there_is = allowance.keep_unfinished && report.iterations > 0 && finite_iterate &&
+                       report.status != SaddleStatus::diverged &&
+                       report.status != SaddleStatus::passed_through && !asked_to_stop() &&
+                       count_passing(problem.increment, false) == 0;
+  if (best_there_is && report.status != SaddleStatus::converged) {
+    SaddleReport unfinished = report;
+    best_there_is = admissible(h, problem, unfinished);
+  }
   if (best_there_is && report.status != SaddleStatus::converged) {
     around = look_around(x_trial, true);
     best_there_is = around.error.empty() && around.crossed + around.passing == 0;
@@ -464,6 +513,12 @@ void World::Impl::accept(double h, std::span<const Vec3> prediction) {
   // No past in the increment itself, and none behind it: it would hold the velocities before the jump.
   const auto forget = [this] { std::fill(scheme_memory().begin(), scheme_memory().end(), 0.0); };
   if (starts_anew) forget();
+  moved = 0;
+  for (std::size_t i = 0; i < x_trial.size(); ++i) {
+    const Vec3 d = x_trial[i] - state.x[i];
+    moved = std::max(moved, dot(d, d));
+  }
+  moved = std::sqrt(moved);
   options.scheme->finish(h, x_trial, prediction, state, scheme_memory());
   if (starts_anew) forget();
   std::copy(lambda_trial.begin(), lambda_trial.end(), state.lambda.begin());
@@ -508,6 +563,10 @@ void World::Impl::begin_amounts(double t0, double t1) {
     // In dynamics a new value holds from the next step on; statics ramps to it.
     if (Amount* a = instance->amount()) a->begin(quasi_static ? t0 : t1, t1);
   }
+}
+
+void World::stop_when(std::function<bool()> asked) {
+  impl_->stop_asked = std::move(asked);
 }
 
 void World::on_progress(std::function<void(const ProgressInfo&)> callback) {

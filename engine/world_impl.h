@@ -5,6 +5,7 @@
 #include <chrono>
 #include <optional>
 
+#include "engine/admission.h"
 #include "engine/builder.h"
 #include "engine/saddle_point.h"
 #include "engine/time_scheme.h"
@@ -35,6 +36,11 @@ struct World::Impl {
   std::atomic<bool> cancel_requested{false};
   std::optional<std::chrono::steady_clock::time_point> deadline;
   std::function<void(const ProgressInfo&)> progress;
+  std::function<bool()> stop_asked;
+  bool asked_to_stop() const {
+    return cancel_requested.load(std::memory_order_relaxed) || (stop_asked && stop_asked());
+  }
+  bool interrupted() const;
 
   // Data of the increment under way; taken once, at compile time.
   std::vector<Vec3> x_trial, predicted, force, position, reactions;
@@ -50,9 +56,29 @@ struct World::Impl {
   std::vector<double> row_work;  // of rows that look back; empty: there are none
   State state_before;            // of an increment that the control of errors may take back
 
+  // Tests of the ends of increments (world_admission.cpp), and what they work with.
+  std::optional<Admission> admission;
+  Admission::Verdict verdict;  // of the last end that was looked at
+  struct {
+    bool known = false;  // false: outside forces do work, or there is nothing to compare with
+    double kinetic = 0;
+    SaddlePoint::Stored stored;
+  } energy_before;
+  State ahead;                                    // of dynamics: the state that an end would make
+  std::vector<Vec3> momentum;                     // one a node
+  std::array<std::vector<double>, 2> row_values;  // where obstacles may move
+  bool moved_from_outside(const SaddleProblem& problem);
+  void begin_energy(const SaddleProblem& problem);
+  std::string energy_gained(double h, const SaddlePoint::Stored& stored);
+  bool admissible(double h, const SaddleProblem& problem, SaddleReport& report);
+  void describe_end(const SaddleReport& solve, StepReport& report);
+  double moved = 0;      // farthest way of a node in the last increment [m]
+  std::string led_away;  // of this step: an increment that ended far from where it began
+
   bool compiled() const { return newton != nullptr; }
   Result<void> compile();
   Result<void> compile_once();
+  void tell_idle_rows();
   void allocate();
   void save_amounts(std::vector<double>& all) const;
   void load_amounts(std::span<const double> all);
@@ -91,7 +117,8 @@ struct World::Impl {
   SaddleOptions saddle_options(const Allowance& allowance) const;
   SaddleReport attempt(double h, const Allowance& allowance);
   void refine_gradients(const SaddleProblem& problem, SaddleOptions saddle, SaddleReport& report);
-  SaddleReport solve_increment(SaddleProblem& problem, const Allowance& allowance, bool from_guess);
+  void judge(double h, const SaddleProblem& problem, SaddleReport& report);
+  SaddleReport solve_increment(double h, SaddleProblem& problem, const Allowance& allowance, bool from_guess);
   std::unique_ptr<SaddlePoint> make_stand_in(Method other) const;
   SaddleReport solve_by(SaddlePoint& other, SaddleProblem& problem, const SaddleOptions& saddle);
   void accept(double h, std::span<const Vec3> prediction);

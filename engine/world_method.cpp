@@ -184,10 +184,7 @@ Result<void> World::Impl::make_method(SystemParts parts, bool keep_solvers) {
     newton = std::make_unique<Newton>(system, *parallel, std::move(solver));
   }
   compile_error.clear();
-  newton->cancelled = [this] {
-    return cancel_requested.load(std::memory_order_relaxed) ||
-           (deadline && std::chrono::steady_clock::now() > *deadline);
-  };
+  newton->set_interrupt([this] { return interrupted(); });
   const auto count = [](std::span<const Index> rows) { return std::to_string(rows.size()); };
   method = std::string(name_of(options.method)) + ": " + std::to_string(system->free_unknowns()) +
            " displacements; rows: " + count(system->kept_rows()) + " in the matrix, " +
@@ -208,7 +205,14 @@ std::unique_ptr<SaddlePoint> World::Impl::make_stand_in(Method other) const {
   if (kind == SolverKind::cholmod_supernodal && !compiled_system.value()->kept_rows().empty()) return nullptr;
   auto solver = make_linear_solver(kind, SolverWishes{});
   if (!solver) return nullptr;
-  return std::make_unique<Newton>(std::move(compiled_system).value(), *parallel, std::move(solver));
+  auto other_method =
+      std::make_unique<Newton>(std::move(compiled_system).value(), *parallel, std::move(solver));
+  other_method->set_interrupt([this] { return interrupted(); });
+  return other_method;
+}
+
+bool World::Impl::interrupted() const {
+  return (deadline && std::chrono::steady_clock::now() > *deadline) || asked_to_stop();
 }
 
 std::string World::method() const {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/path_follower.h"
+#include "engine/text.h"
 #include "engine/world_impl.h"
 
 namespace isochor {
@@ -30,8 +31,7 @@ void accumulate(StepReport& total, const SaddleReport& r) {
 }
 
 std::string failure_text(const SaddleReport& r, double t) {
-  std::string text =
-      "no equilibrium found at t = " + std::to_string(t) + ": " + std::string(to_string(r.status));
+  std::string text = "no equilibrium found at t = " + number(t) + ": " + std::string(to_string(r.status));
   if (!r.message.empty()) text += " (" + r.message + ")";
   return text;
 }
@@ -80,7 +80,7 @@ void World::Impl::finish_report(StepReport& report, const StageSeconds& before, 
 namespace {
 
 std::string bad_length(const char* call, double h) {
-  return std::string(call) + ": h = " + std::to_string(h) + "; it must be positive and finite";
+  return std::string(call) + ": h = " + number(h) + "; it must be positive and finite";
 }
 
 }  // namespace
@@ -95,7 +95,7 @@ StepReport World::step(double h, const StepBudget& budget) {
   if (!(h > 0) || !std::isfinite(h)) return w.invalid(bad_length("step", h));
   if (budget.iterations < 0 || !(budget.seconds >= 0)) {
     return w.invalid("step: a budget of " + std::to_string(budget.iterations) + " iterations and " +
-                     std::to_string(budget.seconds) + " s; both must be zero (no limit) or positive");
+                     number(budget.seconds) + " s; both must be zero (no limit) or positive");
   }
   if (w.cancel_requested) return w.cancelled();
   const auto start = std::chrono::steady_clock::now();
@@ -105,11 +105,12 @@ StepReport World::step(double h, const StepBudget& budget) {
   w.begin_amounts(w.state.t, w.state.t + h);
   if (const double turn = w.largest_turn(w.state.t, w.state.t + h); turn > 0.999 * std::numbers::pi) {
     w.load_amounts(w.amounts_before);
-    return w.invalid("step: something that is prescribed turns by " + std::to_string(turn) +
+    return w.invalid("step: something that is prescribed turns by " + number(turn) +
                      " rad within the step; from half a turn on its end does not tell the way round: use "
                      "advance(), or steps of less than 3.14 rad");
   }
   StepReport report;
+  w.led_away.clear();
   const double t_target = w.state.t + h;
   Impl::Allowance allowance{w.options.max_iterations, 10 * w.options.max_iterations,
                             budget.iterations > 0 || budget.seconds > 0};
@@ -126,14 +127,19 @@ StepReport World::step(double h, const StepBudget& budget) {
   } else if (kept) {
     report.status = StepStatus::unfinished;
     report.reason = "the budget ran out after " + std::to_string(r.iterations) + " iterations";
-  } else if (w.cancel_requested) {
+  } else if (w.asked_to_stop()) {
     w.take_cancel(report);
   } else {
     report.status = StepStatus::rejected;
     report.rejected_substeps = 1;
-    report.reason = failure_text(r, t_target);
+    report.reason = r.status == SaddleStatus::cancelled
+                        ? "the budget ran out before there was an iterate to keep"
+                        : failure_text(r, t_target);
   }
-  if (!kept) w.load_amounts(w.amounts_before);
+  if (kept)
+    w.describe_end(r, report);
+  else
+    w.load_amounts(w.amounts_before);
   w.finish_report(report, before, seconds_since(start));
   return report;
 }
@@ -189,7 +195,7 @@ SaddleReport World::Impl::rescue(double h) {
   loose.row_tolerance = std::max(options.row_tolerance, 1e-7);
   std::vector<Vec3> settled_x = x_trial;
   std::vector<double> settled_lambda = lambda_trial;
-  double inertia = 0.1, moved = 0;
+  double inertia = 0.1, stride = 0;
   for (int k = 0; k < most_steps && inertia < 1e6; ++k) {
     std::copy(settled_x.begin(), settled_x.end(), predicted.begin());
     problem.predicted = predicted;
@@ -211,8 +217,8 @@ SaddleReport World::Impl::rescue(double h) {
     std::copy(x_trial.begin(), x_trial.end(), settled_x.begin());
     std::copy(lambda_trial.begin(), lambda_trial.end(), settled_lambda.begin());
     // Motions that slow down may take longer strides; one that speeds up goes on carefully.
-    inertia *= k == 0 || step > moved ? 0.5 : 0.2;
-    moved = step;
+    inertia *= k == 0 || step > stride ? 0.5 : 0.2;
+    stride = step;
     if (inertia > negligible && step > 1e-4 * system->length()) continue;
     problem.mass_scale = 0;
     SaddleReport last =
@@ -224,7 +230,7 @@ SaddleReport World::Impl::rescue(double h) {
       const Surroundings around = look_around(x_trial, true);
       if (around.changed || around.passing > 0)
         total.status = SaddleStatus::passed_through;
-      else
+      else if (admissible(h, problem, total))
         accept(h, predicted);
       return total;
     }
@@ -246,6 +252,7 @@ StepReport World::advance(double h) {
   const double t0 = w.state.t, t_end = t0 + h;
   w.begin_amounts(t0, t_end);
   StepReport report;
+  w.led_away.clear();
   constexpr double largest_turn = 2;  // [rad] an increment
   const bool statics = !w.options.scheme->has_inertia(), careful = w.controls_error();
   double increment = h;
@@ -270,6 +277,7 @@ StepReport World::advance(double h) {
     allowance.persistent = true;
     const SaddleReport r = w.attempt(dt, allowance);
     accumulate(report, r);
+    if (r.status == SaddleStatus::converged) w.describe_end(r, report);
     if (r.status == SaddleStatus::converged && careful) {
       const double error = w.estimate_error(dt);
       const double power = w.options.scheme->order() + 1.0;
@@ -311,6 +319,7 @@ StepReport World::advance(double h) {
       const SaddleReport rescued = w.rescue(dt);
       accumulate(report, rescued);
       if (rescued.status == SaddleStatus::converged) {
+        w.describe_end(rescued, report);
         ++report.substeps;
         ++report.rescues;
         increment = dt;
@@ -327,8 +336,8 @@ StepReport World::advance(double h) {
       report.reason +=
           ": rows without compliance may repeat each other or lack stabilization, or a part is not held";
     } else if (!hopeless) {
-      report.reason += "; increments shrank to " + std::to_string(increment / h) +
-                       " of the step, the last equilibrium is at t = " + std::to_string(w.state.t) +
+      report.reason += "; increments shrank to " + number(increment / h) +
+                       " of the step, the last equilibrium is at t = " + number(w.state.t) +
                        ": probably there is none beyond (a limit point, or a load that nothing can carry)";
     }
     break;
@@ -368,11 +377,20 @@ StepReport World::follow(double length) {
                          w.scheme_memory());
     accumulate(report, r);
     if (r.status == SaddleStatus::converged) {
+      w.verdict = w.admission->look(w.state.x, w.x_trial);
+      if (w.verdict.forbidden > 0) {
+        r.status = SaddleStatus::inadmissible;
+        r.message = w.admission->refusal(w.verdict);
+        ++report.rejected_substeps;
+        continue;
+      }
       w.accept_memory({0, w.state.x, w.state.t, t});
       std::copy(w.x_trial.begin(), w.x_trial.end(), w.state.x.begin());
       std::copy(w.lambda_trial.begin(), w.lambda_trial.end(), w.state.lambda.begin());
       std::copy(w.newton->residual().begin(), w.newton->residual().end(), w.reactions.begin());
       w.state.t = t;
+      w.moved = 0;
+      w.describe_end(r, report);
       report.substeps = 1;
       if (r.negative_pivots >= 0) report.unstable_directions = r.negative_pivots - w.system->rows();
       break;
@@ -386,8 +404,8 @@ StepReport World::follow(double length) {
     w.take_cancel(report);
   } else if (r.status != SaddleStatus::converged) {
     report.status = StepStatus::rejected;
-    report.reason = "no equilibrium found along the path from t = " + std::to_string(w.state.t) + ": " +
-                    std::string(to_string(r.status)) +
+    report.reason = "no equilibrium found along the path from t = " + number(w.state.t) + ": " +
+                    std::string(to_string(r.status)) + (r.message.empty() ? "" : " (" + r.message + ")") +
                     "; the path may end here (loads that do not change any more, a fold with contact)";
   }
   w.finish_report(report, before, seconds_since(start));

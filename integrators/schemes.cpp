@@ -58,6 +58,7 @@ class ImplicitEuler final : public TimeScheme {
   std::string_view name() const override { return "implicit_euler"; }
   int order() const override { return 1; }
   double error_constant() const override { return 0.5; }
+  double largest_energy_gain() const override { return 1e-3; }
   double begin(const State& state, std::span<const double>, double h,
                std::span<Vec3> predicted) const override {
     return begin_euler(state, h, predicted);
@@ -105,6 +106,7 @@ class Bdf2 final : public TimeScheme {
  public:
   std::string_view name() const override { return "bdf2"; }
   double error_constant() const override { return 2.0 / 9; }
+  double largest_energy_gain() const override { return 0.01; }
   std::size_t memory(std::size_t nodes) const override { return 1 + 6 * nodes; }
   double begin(const State& state, std::span<const double> memory, double h,
                std::span<Vec3> predicted) const override {

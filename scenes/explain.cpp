@@ -79,7 +79,7 @@ std::vector<EffectNote> notes_of(const SceneDef& scene, bool guarded) {
   const bool asked = std::any_of(scene.bodies.begin(), scene.bodies.end(),
                                  [](const SceneBody& b) { return b.guard_stiffness.has_value(); });
   if (guarded)
-    out.push_back({"element guard", asked ? "of the scene" : "by default: edge-smoothed with nu >= 0.49"});
+    out.push_back({"element guard", asked ? "of the scene" : "by default: the body is edge-smoothed"});
   if (scene.analysis.type == AnalysisType::dynamics)
     out.push_back({"inertia", "of the scene: the analysis is dynamic"});
   if (dot(scene.gravity, scene.gravity) > 0) out.push_back({"gravity", "of the scene"});

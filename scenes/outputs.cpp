@@ -32,7 +32,7 @@ std::vector<double> region_of_cells(const Mesh& mesh) {
 std::string table_header(const RunResult& r) {
   std::string line =
       "step,time,iterations,substeps,rejected,stand_ins,force_residual,row_residual,constitutive_residual,"
-      "volume_error,min_J,max_J,elastic_energy_J,kinetic_energy_J,seconds";
+      "volume_error,min_J,max_J,inverted_cells,elastic_energy_J,kinetic_energy_J,seconds";
   for (const auto& p : r.probes) line += "," + p + ".x_m," + p + ".y_m," + p + ".z_m";
   for (const auto& c : r.cavities) line += "," + c + ".pressure_Pa," + c + ".volume_m3";
   for (const auto& s : r.supports) {
@@ -50,10 +50,11 @@ std::string table_header(const RunResult& r) {
 
 std::string table_row(const StepRecord& r) {
   std::string line = std::to_string(r.step);
-  for (const double v : {r.time, static_cast<double>(r.iterations), static_cast<double>(r.substeps),
-                         static_cast<double>(r.rejected), static_cast<double>(r.stand_ins), r.force_residual,
-                         r.row_residual, r.constitutive_residual, r.volume_error, r.min_J, r.max_J,
-                         r.elastic_energy, r.kinetic_energy, r.seconds}) {
+  for (const double v :
+       {r.time, static_cast<double>(r.iterations), static_cast<double>(r.substeps),
+        static_cast<double>(r.rejected), static_cast<double>(r.stand_ins), r.force_residual, r.row_residual,
+        r.constitutive_residual, r.volume_error, r.min_J, r.max_J, static_cast<double>(r.inverted_cells),
+        r.elastic_energy, r.kinetic_energy, r.seconds}) {
     line += "," + number(v);
   }
   const auto add = [&](const Vec3& v) { line += "," + number(v.x) + "," + number(v.y) + "," + number(v.z); };

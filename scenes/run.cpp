@@ -5,6 +5,7 @@
 #include <cmath>
 #include <thread>
 
+#include "engine/text.h"
 #include "scenes/outputs.h"
 #include "scenes/probes.h"
 
@@ -46,6 +47,7 @@ class Run {
   bool out_of_time() const { return options_.budget && seconds_since(start_) > *options_.budget; }
   bool write(RunOutputs* outputs, bool last);
   void warn(const std::string& text);
+  void warn_of_ends();
 
   const SceneDef& scene_;
   const RunOptions& options_;
@@ -53,12 +55,23 @@ class Run {
   RunResult& result_;
   Clock::time_point start_;
   std::vector<MaterialPoint> probes_;
+  int doubtful_steps_ = 0;  // that ended with a warning
   bool interrupted_ = false;
 };
 
 void Run::warn(const std::string& text) {
   result_.warnings.push_back(text);
   if (options_.log) options_.log(text);
+}
+
+// The first step that ended with a warning is told when it happens; here how many did, and how the run ends.
+void Run::warn_of_ends() {
+  if (doubtful_steps_ < 2) return;
+  const StepRecord& last = result_.records.back();
+  std::string text = std::to_string(doubtful_steps_) + " of " + std::to_string(last.step) +
+                     " steps ended with such a warning";
+  if (!last.warning.empty()) text += "; the last state: " + last.warning;
+  warn(text);
 }
 
 void Run::describe() {
@@ -97,6 +110,10 @@ void Run::record(int step, const StepReport& report) {
   r.row_residual = report.row_residual;
   r.seconds = report.seconds.total;
   r.constitutive_residual = world.constitutive_residual();
+  r.inverted_cells = report.inverted_cells;
+  r.warning = report.warning;
+  if (!r.warning.empty() && doubtful_steps_++ == 0)
+    warn("step " + std::to_string(step) + ", t = " + number(world.time()) + ": " + r.warning);
   r.min_J = INFINITY;
   r.max_J = -INFINITY;
   for (const BodyId id : built_.bodies) {
@@ -157,7 +174,7 @@ bool Run::stopped(const StepReport& report) {
       break;
   }
   if (result_.status != RunStatus::not_converged && result_.status != RunStatus::failed) {
-    result_.reason += " at t = " + std::to_string(built_.world.time());
+    result_.reason += " at t = " + number(built_.world.time());
   }
   return true;
 }
@@ -175,10 +192,7 @@ void Run::march(RunOutputs* outputs) {
   const StepPlan plan = plan_steps(scene_.analysis);
   result_.steps_asked = plan.steps;
   World& world = built_.world;
-  world.on_progress([this, &world](const ProgressInfo&) {
-    interrupted_ = interrupted_ || (options_.stop && options_.stop());
-    if (interrupted_ || out_of_time()) world.cancel();
-  });
+  world.stop_when([this] { return (options_.stop && options_.stop()) || out_of_time(); });
   // Until the last step the summary says what is true: the run is not finished.
   result_.status = RunStatus::interrupted;
   result_.reason = "the run has not ended yet";
@@ -193,6 +207,7 @@ void Run::march(RunOutputs* outputs) {
     const auto& path_step = scene_.analysis.path_step;
     if (!interrupted_ && !out_of_time())
       report = path_step ? world.follow(*path_step) : world.advance(plan.h);
+    interrupted_ = interrupted_ || (options_.stop && options_.stop());
     const bool over = stopped(report);
     const bool last = step == plan.steps || (path_step && world.time() >= scene_.analysis.duration);
     if (!over || world.time() != before) {
@@ -208,6 +223,7 @@ void Run::march(RunOutputs* outputs) {
       result_.status = RunStatus::converged;
       result_.reason.clear();
     }
+    if (over || last) warn_of_ends();
     if (!write(outputs, over || last) || over || last) return;
   }
 }

@@ -28,6 +28,8 @@ struct StepRecord {
   double force_residual = 0, row_residual = 0, constitutive_residual = 0;
   double volume_error = 0;  // the largest of all bodies
   double min_J = 1, max_J = 1;
+  Index inverted_cells = 0;                       // cells with J <= 0
+  std::string warning;                            // StepReport::warning
   double elastic_energy = 0, kinetic_energy = 0;  // [J]
   double seconds = 0;                             // of this step's solve
   std::vector<Vec3> probes;                       // displacement of each probe [m]

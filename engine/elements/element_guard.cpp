@@ -1,28 +1,29 @@
 #include "engine/elements/element_guard.h"
 
+#include <algorithm>
+
 namespace isochor {
 
 namespace {
 
+// J of a tet that is flat but for rounding.
+constexpr double flat = 1e-9;
+
 // The energy and its derivatives with respect to J.
-struct Barrier {
+struct Response {
   double value, first, second;
 };
 
-Barrier barrier(double b, double J, double threshold) {
-  const double q = std::log(J / threshold);
+// For J below the threshold; a value that is not finite where there is none.
+Response guard(const ElementGuard::Barrier& barrier, double J, double J_before) {
+  if (!(J_before > flat)) return {0, 0, 0};
+  if (!(J > 0)) return {std::numeric_limits<double>::infinity(), 0, 0};
+  const double b = barrier.stiffness, q = std::log(J / barrier.threshold);
   return {-b * q * q * q, -3 * b * q * q / J, -3 * b * (2 * q - q * q) / (J * J)};
 }
 
-// For J below the threshold; a value that is not finite where there is none.
-Barrier guard(double b, double J, double threshold, double J_before) {
-  if (!(J_before > 0.02 * threshold)) return {0, 0, 0};
-  if (!(J > 0)) return {std::numeric_limits<double>::infinity(), 0, 0};
-  return barrier(b, J, threshold);
-}
-
 // One lane that is below the threshold.
-void evaluate_lane(Want want, const PointBatch& points, ResponseBatch& r, int l, const Barrier& energy,
+void evaluate_lane(Want want, const PointBatch& points, ResponseBatch& r, int l, const Response& energy,
                    const double g[9]) {
   r.psi[l] = energy.value;
   if (want == Want::value) return;
@@ -51,6 +52,11 @@ void evaluate_lane(Want want, const PointBatch& points, ResponseBatch& r, int l,
 
 }  // namespace
 
+ElementGuard::ElementGuard(std::vector<Barrier> barriers) : barriers_(std::move(barriers)) {
+  for (const Barrier& b : barriers_)
+    if (b.stiffness > 0) largest_threshold_ = std::max(largest_threshold_, b.threshold);
+}
+
 void ElementGuard::evaluate(Want want, const PointBatch& points, ResponseBatch& r) const {
   const auto& F = points.F;
   for (int l = 0; l < kLanes; ++l) {
@@ -70,9 +76,9 @@ void ElementGuard::evaluate(Want want, const PointBatch& points, ResponseBatch& 
     if (want == Want::hessian) {
       for (int i = 0; i < 45; ++i) r.A[i][l] = 0;
     }
-    const double b = b_[at(points.element[l])];
-    if (b > 0 && !(J >= threshold_)) {
-      evaluate_lane(want, points, r, l, guard(b, J, threshold_, points.J_before[l]), g);
+    const Barrier& barrier = barriers_[at(points.element[l])];
+    if (barrier.stiffness > 0 && !(J >= barrier.threshold)) {
+      evaluate_lane(want, points, r, l, guard(barrier, J, points.J_before[l]), g);
     }
   }
 }
@@ -81,9 +87,9 @@ void ElementGuard::spectrum(const PointBatch& points, const Svd3& svd, Spectrum&
   Lanes first = {}, second = {};
   for (int l = 0; l < kLanes; ++l) {
     const double J = svd.sigma[0][l] * svd.sigma[1][l] * svd.sigma[2][l];
-    const double b = b_[at(points.element[l])];
-    if (!(b > 0) || !(J < threshold_)) continue;
-    const Barrier energy = guard(b, J, threshold_, points.J_before[l]);
+    const Barrier& barrier = barriers_[at(points.element[l])];
+    if (!(barrier.stiffness > 0) || !(J < barrier.threshold)) continue;
+    const Response energy = guard(barrier, J, points.J_before[l]);
     first[l] = energy.first;
     second[l] = energy.second;
   }

@@ -41,6 +41,12 @@ void ChosenSolver::set_parallel(const Parallel& parallel) {
   iterative_->set_parallel(parallel);
 }
 
+void ChosenSolver::set_interrupt(std::function<bool()> asked) {
+  direct_->set_interrupt(asked);
+  iterative_->set_interrupt(asked);
+  LinearSolver::set_interrupt(std::move(asked));
+}
+
 void ChosenSolver::set_geometry(std::vector<UnknownGeometry> geometry) {
   iterative_->set_geometry(std::move(geometry));
 }
@@ -102,7 +108,7 @@ FactorReport ChosenSolver::factor(std::span<const double> values) {
 
 SolveReport ChosenSolver::solve(std::span<const double> right_hand_side, std::span<double> solution) {
   SolveReport report = now_->solve(right_hand_side, solution);
-  if (report.ok || now_ != iterative_.get() || !direct_fits_) return report;
+  if (report.ok || now_ != iterative_.get() || !direct_fits_ || interrupted()) return report;
   // From here on, since what was hard once tends to stay so.
   iterative_failed_ = true;
   FactorReport factored;

@@ -28,6 +28,7 @@ class ChosenSolver final : public LinearSolver {
   std::string_view name() const override { return now_->name(); }
   std::string reason() const override;
   void set_parallel(const Parallel& parallel) override;
+  void set_interrupt(std::function<bool()> asked) override;
   bool wants_geometry() const override { return true; }
   void set_geometry(std::vector<UnknownGeometry> geometry) override;
   void set_scale(std::span<const double> scale) override;

@@ -211,7 +211,8 @@ bool FrontFactor<Real>::eliminate(Index f, const RowLoop& loop, std::span<const 
 }
 
 template <class Real>
-bool FrontFactor<Real>::factor(const RowLoop& loop, std::span<const double> values, Real smallest) {
+bool FrontFactor<Real>::factor(const RowLoop& loop, std::span<const double> values, Real smallest,
+                               const std::function<bool()>& stop) {
   const FrontTree& t = *tree_;
   if (!sized_) take_memory();
   const RowLoop alone;
@@ -219,13 +220,13 @@ bool FrontFactor<Real>::factor(const RowLoop& loop, std::span<const double> valu
     for (Index j = begin; j < end; ++j) {
       bool ok = true;
       for (Index f = t.job_start[at(j)]; ok && f < t.job_end[at(j)]; ++f)
-        ok = eliminate(f, alone, values, smallest);
+        ok = !(stop && stop()) && eliminate(f, alone, values, smallest);
       job_ok_[at(j)] = ok ? 1 : 0;
     }
   });
   if (std::find(job_ok_.begin(), job_ok_.end(), 0) != job_ok_.end()) return false;
   for (const Index f : t.above) {
-    if (!eliminate(f, loop, values, smallest)) return false;
+    if ((stop && stop()) || !eliminate(f, loop, values, smallest)) return false;
   }
   return true;
 }

@@ -2,6 +2,7 @@
 // precision.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,8 +16,10 @@ class FrontFactor {
  public:
   // The tree must outlive the factor. Memory that is there is kept for it.
   void set_tree(const FrontTree& tree);
-  // False when a pivot is below `smallest` in magnitude, or not a number.
-  bool factor(const RowLoop& loop, std::span<const double> values, Real smallest);
+  // False when a pivot is below `smallest` in magnitude, or not a number; or when `stop`, asked before each
+  // front, says so (it may be empty).
+  bool factor(const RowLoop& loop, std::span<const double> values, Real smallest,
+              const std::function<bool()>& stop = {});
   Index negative_pivots() const;
   // x = A^-1 x, in the sequence of the pattern's unknowns.
   void solve(std::span<Real> x);

@@ -194,6 +194,7 @@ bool IterativeSolver::minimize(std::span<const double> b, std::span<double> x, d
     loop_(size, grain, [&](Index begin, Index end) {
       for (Index i = begin; i < end; ++i) z1_[at(i)] /= gamma1;
     });
+    if (interrupted()) return true;
     matrix_.multiply(loop_, multigrid_.matrix(), z1_, v2_);
     const double delta = dot(v2_, z1_);
     loop_(size, grain, [&](Index begin, Index end) {
@@ -249,7 +250,7 @@ SolveReport IterativeSolver::solve(std::span<const double> right_hand_side, std:
   double first = norm_of_residual(b_, x_), now = first;
   // The recurrence of the residual drifts from the residual itself: a restart or two make up for that.
   constexpr int most_restarts = 4;
-  for (int restart = 0; restart < most_restarts; ++restart) {
+  for (int restart = 0; restart < most_restarts && !interrupted(); ++restart) {
     const double target = options_.tolerance * first;
     if (now >= 0 && minimize(b_, x_, 0.9 * target, report.iterations)) {
       const double after = norm_of_residual(b_, x_);

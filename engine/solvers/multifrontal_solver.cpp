@@ -31,6 +31,11 @@ void MultifrontalSolver::set_parallel(const Parallel& parallel) {
   if (pivoting_) pivoting_->set_parallel(parallel);
 }
 
+void MultifrontalSolver::set_interrupt(std::function<bool()> asked) {
+  if (pivoting_) pivoting_->set_interrupt(asked);
+  LinearSolver::set_interrupt(std::move(asked));
+}
+
 void MultifrontalSolver::set_scale(std::span<const double> scale) {
   if (pivoting_) pivoting_->set_scale(scale);
 }
@@ -96,7 +101,12 @@ FactorReport MultifrontalSolver::factor_from(Rung rung) {
   report.factor_nonzeros = tree_.panel_start.back();
   for (rung_ = rung; rung_ != Rung::pivoting; rung_ = rung_ == Rung::single ? Rung::full : Rung::pivoting) {
     target_residual = rung_ == Rung::single ? enough_for_single : rounding_level;
-    if (!factor_fronts(report)) continue;
+    const bool whole = factor_fronts(report);
+    if (interrupted()) {
+      report.status = FactorStatus::interrupted;
+      return report;
+    }
+    if (!whole) continue;
     reported_ = report.negative_pivots;
     lowest_ = std::max(lowest_, rung_);
     ++used_[static_cast<int>(rung_)];
@@ -109,9 +119,10 @@ FactorReport MultifrontalSolver::factor_from(Rung rung) {
 }
 
 bool MultifrontalSolver::factor_fronts(FactorReport& report) {
-  const bool ok = rung_ == Rung::single
-                      ? single_.factor(loop_, values(), static_cast<float>(smallest_single * norm()))
-                      : full_.factor(loop_, values(), smallest_double * norm());
+  const bool ok =
+      rung_ == Rung::single
+          ? single_.factor(loop_, values(), static_cast<float>(smallest_single * norm()), interrupt())
+          : full_.factor(loop_, values(), smallest_double * norm(), interrupt());
   if (!ok) return false;
   report.negative_pivots = rung_ == Rung::single ? single_.negative_pivots() : full_.negative_pivots();
   return report.negative_pivots == expected_ || probe();
@@ -143,7 +154,7 @@ FactorReport MultifrontalSolver::factor_pivoting() {
 // Where refinement does not contract, on to the next rung; for good, as far as this solve of a saddle point
 // goes.
 bool MultifrontalSolver::strengthen(SolveReport& report) {
-  if (rung_ == Rung::pivoting) return false;
+  if (rung_ == Rung::pivoting || interrupted()) return false;
   lowest_ = rung_ == Rung::single ? Rung::full : Rung::pivoting;
   const Index before = reported_;
   const FactorReport again = factor_from(lowest_);

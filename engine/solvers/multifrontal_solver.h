@@ -34,6 +34,7 @@ class MultifrontalSolver final : public DirectSolver {
   std::string_view name() const override { return "multifrontal"; }
   std::string reason() const override;
   void set_parallel(const Parallel& parallel) override;
+  void set_interrupt(std::function<bool()> asked) override;
   void set_scale(std::span<const double> scale) override;
   void begin_solve() override;
 

@@ -34,8 +34,8 @@ std::vector<Ordering> order_unknowns(const SymmetricPattern& pattern,
                                      std::span<const OrderingMethod> methods);
 
 // The pattern that a scene starts with, whose pivot sequence serves what comes of it as long as that costs
-// little more (best_ordering() in front_tree.h). It is found when it is first asked for and depends on nothing
-// else, so that a run does not depend on where it was started.
+// little more (best_ordering() in front_tree.h). It is found when it is first asked for and depends on
+// nothing else, so that a run does not depend on where it was started.
 struct OrderingBase {
   SymmetricPattern pattern;
   Ordering ordering;

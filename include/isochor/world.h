@@ -61,7 +61,8 @@ struct BodyDef {
   Element element = Element::tet4_edge_smoothed;
   std::vector<RegionMaterial> materials;
   // Barrier against single tets turning over, edge-smoothed bodies only: energy -stiffness mu V
-  // log^3(J/threshold) for J < threshold. 0 switches it off. By default on for regions with nu >= 0.49.
+  // log^3(J/threshold) for J < threshold. 0 switches it off. By default 1, with a threshold of at most 0.1
+  // where nu < 0.49, whose true compression it would falsify.
   std::optional<double> guard_stiffness;
   double guard_threshold = 0.5;
 };
@@ -158,6 +159,13 @@ struct StepReport {
   // follow(): directions in which the equilibrium is unstable under fixed loads; -1: the backend cannot tell.
   Index unstable_directions = -1;
   double time_error = 0;  // estimate for the last increment, as in WorldOptions
+  // Of the state now: smallest J over all cells (over points for Tet10 and Hex8), and cells with J <= 0. A
+  // cell that started right side out is inverted only where its law lives through that and has no guard.
+  double min_J = 1;
+  Index inverted_cells = 0;
+  // A sentence about an end that is admissible and yet not to be taken as it is: cells inverted or crushed,
+  // an equilibrium far from the last one, rows that a fixed number of sweeps leaves unmet. Empty: none.
+  std::string warning;
   double force_residual = 0, row_residual = 0, linear_residual = 0;
   StageTimes seconds;
 };
@@ -283,6 +291,10 @@ class World {
   Result<void> load(std::span<const std::byte> bytes);
 
   void on_progress(std::function<void(const ProgressInfo&)> callback);
+  // Asked many times a second while a step works, from any of the world's threads; true cancels the step,
+  // which returns `cancelled` with the state as it was. Only single calls into other libraries (an ordering,
+  // a factorization by MUMPS) are waited for.
+  void stop_when(std::function<bool()> asked);
 
  private:
   struct Impl;

@@ -41,6 +41,7 @@ void add_state(Json& j, const RunResult& r) {
   j["constitutive_residual"] = end.constitutive_residual;
   j["min_J"] = end.min_J;
   j["max_J"] = end.max_J;
+  j["inverted_cells"] = end.inverted_cells;
   j["elastic_energy_J"] = end.elastic_energy;
   j["kinetic_energy_J"] = end.kinetic_energy;
   for (const char* key : {"probes", "cavities", "reactions"}) j[key] = Json::object();

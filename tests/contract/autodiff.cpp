@@ -158,6 +158,14 @@ std::vector<const Pool*> pools_of(const SceneProbe& scene) {
 HyperDual distortional(const test::Gradient9& F) {
   return 0.5 * (test::trace_C(F) - HyperDual(3)) - log(test::determinant(F));
 }
+// The guard of a compressible body, with the shear modulus of the registry.
+HyperDual guard(const test::Gradient9& F) {
+  constexpr double threshold = 0.1;
+  const HyperDual J = test::determinant(F);
+  if (J.a >= threshold) return HyperDual();
+  const HyperDual q = log(J / threshold);
+  return -1.0 * q * q * q;
+}
 HyperDual complete(const test::Gradient9& F) {
   const HyperDual l = log(test::determinant(F));
   return distortional(F) + 0.5 * 2.6 * 0.3 / (1.3 * 0.4) * l * l;
@@ -175,7 +183,10 @@ TEST_CASE("solids and their volume functions have the derivatives of their formu
       const bool rows = variant != ", one field";
       for (const SolidPool* pool : pools_of<SolidPool>(scene)) {
         INFO(pool->name());
-        compare(scene, *pool, solid(*pool, variant.back() == '1', [rows](const test::Gradient9& F) {
+        // The single tets of smoothed bodies carry the element guard in place of the material's energy.
+        const bool tets = element == "edge-smoothed" && !pool->name().ends_with("/patches");
+        compare(scene, *pool, solid(*pool, variant.back() == '1', [rows, tets](const test::Gradient9& F) {
+                  if (tets) return guard(F);
                   return rows ? distortional(F) : complete(F);
                 }));
       }

@@ -347,8 +347,8 @@ class BeganAt final : public isochor::Material {
 
 void add_element_guard(std::vector<MaterialCase>& out) {
   constexpr double b = 1.3, threshold = 0.5;
-  const auto guard =
-      std::make_shared<isochor::ElementGuard>(std::vector<double>(isochor::kLanes, b), threshold);
+  const auto guard = std::make_shared<isochor::ElementGuard>(
+      std::vector<isochor::ElementGuard::Barrier>(isochor::kLanes, {b, threshold}));
   MaterialCase c;
   c.name = "element_guard";
   c.material = std::make_shared<BeganAt>(guard, 1);

@@ -56,7 +56,7 @@ Climb inflate(bool moderate, DualAscentOptions ascent, int load_steps = 10, doub
       if (!close) steps = k;
       close = close || error < level * volume;
     };
-    method.cancelled = [&] { return close; };
+    method.set_interrupt([&] { return close; });
     const SaddleReport r = method.solve(data.problem(), {}, x, lambda);
     if (r.status != SaddleStatus::cancelled) out.status = r.status;
     out.most = std::max(out.most, steps);

@@ -59,6 +59,7 @@ TEST_CASE("what is switched off is not in an explanation") {
   variant.mesh = "finger_small";
   SceneDef scene = finger(variant);
   for (auto& m : scene.bodies[0].materials) m.constants.poisson = 0.4;
+  scene.bodies[0].guard_stiffness = 0;
   scene.cavities.clear();
   std::erase_if(scene.metrics, [](const MetricDef& m) { return m.quantity == Quantity::cavity_volume; });
   scene.volumes = std::vector<VolumeRows>(1);
