@@ -35,6 +35,7 @@ int chaos(const StudyArguments& a, const std::function<bool()>& stop) {
   options.limit = a.limit;
   options.jobs = a.jobs;
   options.keep = a.keep;
+  options.judge_time = !a.untimed;
   if (a.quick) options.size = studies::ChaosSize::small();
   options.stop = stop;
   const auto start = std::chrono::steady_clock::now();

@@ -43,7 +43,7 @@ struct StudyArguments {
   std::string seeds = "1-100";
   double limit = 120;  // [s] a seed
   int jobs = 1;
-  bool keep = false;
+  bool keep = false, untimed = false;
 };
 
 struct ViewArguments {

@@ -193,10 +193,10 @@ std::optional<Finding> StateJudge::accepted(const World& world, std::span<const 
                                      number(std::min(s.min_J, s.min_law_J))};
     }
     if (s.inverted > 0 && tells_inversion(said) == nullptr) {
-      return Finding{"inverted, not told", "body \"" + name + "\": " + std::to_string(s.inverted) +
-                                               " cells are inverted, smallest J " + number(s.min_J) +
-                                               ", first cell " + std::to_string(s.first_cell + 1) +
-                                               ", and no warning says so"};
+      return Finding{"inverted unsaid", "body \"" + name + "\": " + std::to_string(s.inverted) +
+                                            " cells are inverted, smallest J " + number(s.min_J) +
+                                            ", first cell " + std::to_string(s.first_cell + 1) +
+                                            ", and no warning says so"};
     }
     const double reported = world.measures(bodies_[b].promise.body).min_J;
     if (!(std::abs(reported - s.min_J) <= 1e-6 * (1 + std::abs(s.min_J)))) {

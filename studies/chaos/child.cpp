@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <utility>
 
@@ -18,6 +20,7 @@ namespace isochor::studies {
 
 namespace {
 
+constexpr double kWallOverProcessor = 10;
 constexpr char kBetween = '\x1f';
 
 std::string encoded(const ChaosOutcome& o) {
@@ -61,20 +64,26 @@ void send(int pipe, const std::string& text) {
 }
 
 // In the child: nothing returns from here.
-[[noreturn]] void work(std::uint64_t seed, const ChaosStudyOptions& options, const std::string& folder,
-                       int pipe) {
+[[noreturn]] void work_and_exit(const std::function<ChaosOutcome()>& work, const std::string& folder,
+                                double limit, int pipe) {
   std::signal(SIGINT, SIG_IGN);  // the parent ends what it began
   std::signal(SIGTERM, SIG_DFL);
   const rlimit none{0, 0};
   setrlimit(RLIMIT_CORE, &none);
-  const ChaosScene chaos = chaos_scene(seed, options.size);
-  if (write_chaos_scene(chaos, folder).ok() || true) {
-    // Whatever a library or a sanitizer prints belongs to the seed.
-    const int errors = ::open((folder + "/errors.txt").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    if (errors >= 0) dup2(errors, 2);
-  }
-  const ChaosOutcome out = run_chaos_scene(chaos, {folder, options.judge_time});
-  send(pipe, encoded(out));
+  const auto seconds = static_cast<rlim_t>(std::ceil(std::max(limit, 1.0)));
+  const rlimit processor{seconds, seconds + 5};
+  setrlimit(RLIMIT_CPU, &processor);
+  std::signal(SIGXCPU, SIG_DFL);
+#ifndef __SANITIZE_ADDRESS__
+  // Handlers of a test program are for the program itself.
+  for (const int s : {SIGABRT, SIGSEGV, SIGFPE, SIGILL, SIGBUS}) std::signal(s, SIG_DFL);
+#endif
+  // Whatever a library or a sanitizer prints belongs to the seed.
+  std::error_code code;
+  std::filesystem::create_directories(folder, code);
+  const int errors = ::open((folder + "/errors.txt").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  if (errors >= 0) dup2(errors, 2);
+  send(pipe, encoded(work()));
   ::close(pipe);
   _exit(0);
 }
@@ -92,18 +101,16 @@ std::string last_words(const std::string& folder) {
 
 }  // namespace
 
-ChaosChild::ChaosChild(std::uint64_t seed, const ChaosStudyOptions& options)
-    : seed_(seed),
-      folder_(options.folder + "/seeds/" + std::to_string(seed)),
-      limit_(options.limit),
-      start_(std::chrono::steady_clock::now()) {
+ChaosChild::ChaosChild(std::uint64_t seed, std::string folder, double limit,
+                       const std::function<ChaosOutcome()>& work)
+    : seed_(seed), folder_(std::move(folder)), limit_(limit), start_(std::chrono::steady_clock::now()) {
   int ends[2];
   if (::pipe(ends) != 0) return;
   std::fflush(nullptr);
   process_ = fork();
   if (process_ == 0) {
     ::close(ends[0]);
-    work(seed, options, folder_, ends[1]);
+    work_and_exit(work, folder_, limit_, ends[1]);
   }
   ::close(ends[1]);
   pipe_ = ends[0];
@@ -148,7 +155,8 @@ bool ChaosChild::ended() {
     return true;
   }
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start_;
-  if (taken.count() < limit_) return false;
+  // Other work on the machine may slow it down; what waits for nothing uses no processor time.
+  if (taken.count() < kWallOverProcessor * limit_) return false;
   too_long_ = true;
   kill_and_wait();
   return true;
@@ -160,9 +168,10 @@ ChaosOutcome ChaosChild::outcome() {
   if (pipe_ < 0 && !too_long_) {
     out.kind = "no process";
     out.reason = "a process for the seed could not be made";
-  } else if (too_long_) {
+  } else if (too_long_ || (WIFSIGNALED(status_) && WTERMSIG(status_) == SIGXCPU)) {
     out.kind = "hang";
-    out.reason = "it had not ended after " + std::to_string(static_cast<int>(limit_)) + " s";
+    out.reason =
+        "it had not ended after " + std::to_string(static_cast<int>(limit_)) + " s of processor time";
     out.seconds = limit_;
   } else if (WIFSIGNALED(status_)) {
     out.kind = "crash";

@@ -11,7 +11,8 @@ namespace isochor::studies {
 
 class ChaosChild {
  public:
-  ChaosChild(std::uint64_t seed, const ChaosStudyOptions& options);
+  // `work` runs in the child; `folder` is made by it and takes what it prints to stderr.
+  ChaosChild(std::uint64_t seed, std::string folder, double limit, const std::function<ChaosOutcome()>& work);
   ~ChaosChild();
   ChaosChild(ChaosChild&& other) noexcept;
   ChaosChild& operator=(ChaosChild&&) = delete;

@@ -24,7 +24,9 @@ struct ChaosOutcome {
   std::string kind;    // of what is broken, one or two words
   std::string reason;  // the engine's, or the judge's
   int steps = 0, asked = 0, iterations = 0;
-  double seconds = 0, overshoot = 0;  // the latter beyond a budget in seconds
+  double seconds = 0;
+  // Beyond a budget in seconds, of wall time, and what of it was work of its own.
+  double overshoot = 0, own_overshoot = 0;
   double min_J = 1;
   long inverted = 0;
 };

@@ -3,6 +3,7 @@
 #include <poll.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <filesystem>
 #include <map>
@@ -69,6 +70,13 @@ std::string table(const std::string& head, const std::map<std::string, Count>& c
   return text + "\n";
 }
 
+ChaosChild child_of(std::uint64_t seed, const ChaosStudyOptions& options) {
+  const std::string folder = options.folder + "/seeds/" + std::to_string(seed);
+  return {seed, folder, options.limit, [&] {
+            return run_chaos_scene(chaos_scene(seed, options.size), {folder, options.judge_time});
+          }};
+}
+
 }  // namespace
 
 std::string chaos_tables(const std::vector<ChaosOutcome>& outcomes, const ChaosSize& size) {
@@ -118,7 +126,7 @@ ChaosStudyResult run_chaos_study(const ChaosStudyOptions& options) {
     result.interrupted = options.stop && options.stop();
     if (result.interrupted) break;  // what runs is ended with its owner
     while (next <= options.last && running.size() < static_cast<std::size_t>(std::max(1, options.jobs)))
-      running.emplace_back(next++, options);
+      running.push_back(child_of(next++, options));
     std::vector<pollfd> pipes;
     for (const ChaosChild& child : running) pipes.push_back({child.pipe(), POLLIN, 0});
     poll(pipes.data(), pipes.size(), 50);

@@ -14,7 +14,7 @@ struct ChaosStudyOptions {
   std::uint64_t first = 1, last = 100;  // seeds, both included
   ChaosSize size;
   std::string folder;  // required
-  double limit = 120;  // [s] that a seed may take before it counts as hanging
+  double limit = 120;  // [s] of processor time that a seed may take before it counts as hanging
   int jobs = 1;        // seeds at a time
   bool keep = false;   // the scenes of all seeds, not only of broken ones
   bool judge_time = true;
