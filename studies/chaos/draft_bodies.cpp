@@ -321,7 +321,7 @@ void draw_space(ChaosRandom& random, const DraftBody& body, VolumeDef& def) {
     low.boxes = {{body.lower - size, Vec3{middle.x, body.upper.y + size.y, body.upper.z + size.z}}};
     if (random.chance(0.3)) middle.x -= 0.2 * size.x;  // overlapping
     high.boxes = {{Vec3{middle.x, body.lower.y - size.y, body.lower.z - size.z}, body.upper + size}};
-    low.compliance = random.pick({1.0, 1.0, 0.0, 10.0});
+    low.compliance = random.pick({1.0, 1.0, 1.0, 1.0, 0.0, 10.0});
     def.zones = {low, high};
   }
   if (def.space == VolumeSpace::body || def.space == VolumeSpace::zone)

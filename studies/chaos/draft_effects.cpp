@@ -72,6 +72,7 @@ bool hold(ChaosRandom& random, ChaosDraft& draft, std::size_t b, int axis, bool 
       def.where.nearest = {body.lower, body.upper, {body.upper.x, body.lower.y, body.lower.z}};
       break;
     case 1:
+      if (body.regions.size() == 1 && !random.chance(0.1)) break;  // all of the body
       def.where = {};
       def.where.body = id_of(b);
       def.where.regions = {body.regions.back()};

@@ -131,6 +131,8 @@ bool ChaosRun::take(const StepReport& report, double before, std::uint64_t hash)
   const bool stayed = world.time() == before;
   if (report.status != StepStatus::converged && report.reason.empty())
     return broken("no reason", "a step that did not converge says no reason");
+  if (report.status == StepStatus::rejected && report.reason.find("cancelled") != std::string::npos)
+    return broken("misreported", "a step that was cancelled is called rejected: " + report.reason);
   if (report.status == StepStatus::unfinished) {
     unfinished_ = true;
     ++out_.steps;
