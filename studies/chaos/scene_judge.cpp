@@ -179,41 +179,18 @@ SceneDef with_poses(SceneDef scene, const BuiltScene& built) {
 
 SceneJudge::SceneJudge(const SceneDef& scene, const BuiltScene& built)
     : scene_(with_poses(scene, built)), state_(built.world, promises(scene, built)) {
-  const World& world = built.world;
   const AnalysisDef& a = scene_.analysis;
   limits_.rows = std::max(1e-8, 10 * a.row_tolerance);
   if (a.method == Method::position_based) limits_.rows = HUGE_VAL;
   // Its rows are met in the middle of a step; what the end misses is of second order, and this is no more.
   if (a.type == AnalysisType::dynamics && a.scheme == SchemeWord::implicit_midpoint) limits_.rows = 0.1;
+  isolated_ = is_isolated(scene_);
   Vec3 lower{HUGE_VAL, HUGE_VAL, HUGE_VAL}, upper = -lower;
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
-    const SceneBody& body = scene_.bodies[b];
-    const Mesh& mesh = world.mesh(built.bodies[b]);
-    const VolumeRows* rows = rows_of(scene_, b);
-    bool incompressible = rows != nullptr && rows->def.hard;
-    if (rows != nullptr && rows->def.carries_bulk && !incompressible) {
-      incompressible = std::all_of(body.materials.begin(), body.materials.end(), [](const MaterialDef& m) {
-        return m.constants.poisson == 0.5 && !m.poisson_field.given();
-      });
-    }
-    const bool whole = rows != nullptr && rows->def.regions.empty() && rows->def.space != VolumeSpace::zone &&
-                       rows->def.space != VolumeSpace::ring;
-    exact_volume_.push_back(incompressible && whole);
-    log_volume_.push_back(rows != nullptr && rows->def.strain == VolumeStrainKind::logarithmic);
+    watch_volume(b);
+    watch_energy(built, b);
+    const Mesh& mesh = built.world.mesh(built.bodies[b]);
     held_.emplace_back(mesh.nodes.size(), false);
-    double mass = 0;
-    const JudgedShape shape = state_.shape(world, b);
-    for (const MaterialDef& m : body.materials) mass = std::max(mass, m.density);
-    const bool one_density = std::all_of(body.materials.begin(), body.materials.end(),
-                                         [&](const MaterialDef& m) { return m.density == mass; });
-    mass_.push_back(mass * shape.rest_volume);
-    center_.push_back(world.measures(built.bodies[b]).center_of_mass);
-    isolated_ = b == 0 ? is_isolated(scene_) : isolated_;
-    if (!one_density && !(scene_.gravity == Vec3{})) isolated_ = false;
-    double stiff = 0;
-    for (const MaterialDef& m : body.materials)
-      stiff = std::max({stiff, m.constants.young, m.constants.mu, m.own.c1 + m.own.c2, m.own.mu0});
-    energy_noise_ += 1e-9 * stiff * shape.rest_volume;
     for (const Vec3& X : mesh.nodes) {
       for (int k = 0; k < 3; ++k) {
         lower[k] = std::min(lower[k], X[k]);
@@ -222,28 +199,65 @@ SceneJudge::SceneJudge(const SceneDef& scene, const BuiltScene& built)
     }
   }
   length_ = length(upper - lower);
-  start_energy_ = world.kinetic_energy() + world.elastic_energy();
-  std::vector<std::vector<int>> supports(held_.size());
-  for (std::size_t b = 0; b < held_.size(); ++b) supports[b].assign(held_[b].size(), 0);
+  start_energy_ = built.world.kinetic_energy() + built.world.elastic_energy();
+  watch_supports(built);
+  watch_contacts(built);
+}
+
+void SceneJudge::watch_volume(std::size_t b) {
+  const VolumeRows* rows = rows_of(scene_, b);
+  bool exact = false;
+  if (rows != nullptr) {
+    const auto& materials = scene_.bodies[b].materials;
+    const bool incompressible = std::all_of(materials.begin(), materials.end(), [](const MaterialDef& m) {
+      return m.constants.poisson == 0.5 && !m.poisson_field.given();
+    });
+    const bool whole = rows->def.regions.empty() && rows->def.space != VolumeSpace::zone &&
+                       rows->def.space != VolumeSpace::ring;
+    exact = whole && (rows->def.hard || (rows->def.carries_bulk && incompressible));
+  }
+  exact_volume_.push_back(exact);
+  log_volume_.push_back(rows != nullptr && rows->def.strain == VolumeStrainKind::logarithmic);
+}
+
+void SceneJudge::watch_energy(const BuiltScene& built, std::size_t b) {
+  const auto& materials = scene_.bodies[b].materials;
+  const double volume = state_.shape(built.world, b).rest_volume, density = materials.front().density;
+  const bool one_density = std::all_of(materials.begin(), materials.end(),
+                                       [&](const MaterialDef& m) { return m.density == density; });
+  if (!one_density && !(scene_.gravity == Vec3{})) isolated_ = false;
+  mass_.push_back(density * volume);
+  center_.push_back(built.world.measures(built.bodies[b]).center_of_mass);
+  double stiff = 0;
+  for (const MaterialDef& m : materials)
+    stiff = std::max({stiff, m.constants.young, m.constants.mu, m.own.c1 + m.own.c2, m.own.mu0});
+  energy_noise_ += 1e-9 * stiff * volume;
+}
+
+void SceneJudge::watch_supports(const BuiltScene& built) {
+  std::map<std::pair<BodyId, Index>, int> times;
   for (const DirichletDef& d : scene_.dirichlet) {
     const auto b = static_cast<std::size_t>(d.where.body);
-    const std::set<Index> nodes = selected(world.mesh(built.bodies[b]), d.where);
+    const std::set<Index> nodes = selected(built.world.mesh(built.bodies[b]), d.where);
     supported_.emplace_back(nodes.begin(), nodes.end());
     for (const Index i : nodes) {
       held_[b][static_cast<std::size_t>(i)] = true;
-      ++supports[b][static_cast<std::size_t>(i)];
+      ++times[{d.where.body, i}];
     }
   }
   // Where supports share a node, the first one has it or both agree; neither is asked about here.
   for (std::size_t d = 0; d < supported_.size(); ++d) {
-    const auto b = static_cast<std::size_t>(scene_.dirichlet[d].where.body);
-    std::erase_if(supported_[d], [&](Index i) { return supports[b][static_cast<std::size_t>(i)] > 1; });
+    const BodyId body = scene_.dirichlet[d].where.body;
+    std::erase_if(supported_[d], [&](Index i) { return times[{body, i}] > 1; });
   }
+}
+
+void SceneJudge::watch_contacts(const BuiltScene& built) {
   for (const ContactDef& c : scene_.contacts) {
     touching_.emplace_back();
     if (!c.against.empty() || !c.rigid.empty() || c.compliance > 0 || !c.surfaces.empty()) continue;
     const auto b = static_cast<std::size_t>(c.body);
-    for (const Index i : boundary_corners(world.mesh(built.bodies[b]))) {
+    for (const Index i : boundary_corners(built.world.mesh(built.bodies[b]))) {
       if (!held_[b][static_cast<std::size_t>(i)]) touching_.back().push_back(i);
     }
   }

@@ -19,6 +19,11 @@ class SceneJudge {
   std::pair<double, std::int64_t> smallest_J(const World& world) const;
 
  private:
+  // What to ask later, found out at the start.
+  void watch_volume(std::size_t body);
+  void watch_energy(const BuiltScene& built, std::size_t body);
+  void watch_supports(const BuiltScene& built);
+  void watch_contacts(const BuiltScene& built);
   std::optional<Finding> volume(const World& world, std::size_t body) const;
   std::optional<Finding> support(const World& world, std::size_t def) const;
   std::optional<Finding> obstacle(const BuiltScene& built, std::size_t contact) const;
