@@ -1,6 +1,7 @@
 // The subcommands of `isochor`. Each returns the exit code.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,11 @@ struct StudyArguments {
   bool quick = false, fresh = false, list = false, quiet = false;
   bool check = false, update = false;
   int threads = 0;
+  // Of chaos.
+  std::string seeds = "1-100";
+  double limit = 120;  // [s] a seed
+  int jobs = 1;
+  bool keep = false, untimed = false;
 };
 
 struct ViewArguments {
@@ -49,6 +55,8 @@ struct ViewArguments {
 int run(const RunArguments& arguments);
 int view(const ViewArguments& arguments);
 int study(const StudyArguments& arguments);
+// The study of random scenes; `stop` is asked now and then.
+int chaos(const StudyArguments& arguments, const std::function<bool()>& stop);
 int show(const std::string& scene, const std::vector<std::string>& overrides);
 int list(bool json);
 int check(const std::vector<std::string>& meshes, double scale, bool json);

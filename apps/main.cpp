@@ -48,6 +48,15 @@ void add_study(CLI::App& top, app::StudyArguments& a) {
   c->add_flag("--check", a.check, "Hold guarded cells of all studies against the committed expectations");
   c->add_flag("--update", a.update, "With --check: write what was found as the new expectations")
       ->needs("--check");
+  c->add_option("--seeds", a.seeds, "chaos: the seeds, first and last")
+      ->type_name("A-B")
+      ->capture_default_str();
+  c->add_option("--limit", a.limit, "chaos: processor time after which a seed counts as hanging")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber);
+  c->add_option("--jobs", a.jobs, "chaos: seeds at a time")->check(CLI::Range(1, 256));
+  c->add_flag("--keep", a.keep, "chaos: keep the scenes of all seeds, not only of broken ones");
+  c->add_flag("--untimed", a.untimed, "chaos: report overshot budgets, and do not count them as broken");
   c->add_flag("--quiet", a.quiet, "Print errors only");
   c->footer("A study that is stopped (Ctrl-C) leaves what it has; the same command goes on from there.");
 }

@@ -38,6 +38,7 @@ int list_studies() {
     table.add({std::string(s.name), std::string(s.question), std::to_string(s.cells(false).size()),
                std::to_string(s.cells(true).size())});
   }
+  table.add({"chaos", "Does any random scene end wrong and unsaid? (one process a seed: --seeds)", "", ""});
   std::printf("%s\nRun one with `isochor study NAME`.\n", table.text().c_str());
   return success;
 }
@@ -45,7 +46,8 @@ int list_studies() {
 Result<const studies::Study*> find(const std::string& name) {
   if (const studies::Study* study = studies::find_study(name)) return study;
   std::string known;
-  for (const auto& s : studies::studies()) known += (known.empty() ? "" : ", ") + std::string(s.name);
+  for (const auto& s : studies::studies()) known += std::string(s.name) + ", ";
+  known += "chaos";
   return Error{"there is no study named \"" + name + "\"; there are " + known};
 }
 
@@ -83,6 +85,7 @@ int study(const StudyArguments& a) {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   if (a.check) return check_all(a.update, a.quiet);
+  if (a.study == "chaos") return chaos(a, [] { return g_signals.load() > 0; });
   if (a.study.empty()) {
     std::fprintf(stderr, "isochor: study: name one, or ask for --list\n");
     return bad_input;

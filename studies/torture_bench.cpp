@@ -4,6 +4,8 @@
 #include <chrono>
 #include <limits>
 
+#include "studies/judge.h"
+
 namespace isochor::studies {
 
 namespace {
@@ -14,12 +16,6 @@ double seconds_now() {
 
 double length(const Vec3& v) {
   return std::sqrt(dot(v, v));
-}
-
-bool all_finite(std::span<const Vec3> values) {
-  return std::all_of(values.begin(), values.end(), [](const Vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-  });
 }
 
 // Moves each node by up to a twentieth of the shortest edge at it; nodes on a plane of the bounding box stay
@@ -105,7 +101,9 @@ TortureBench::TortureBench(const TortureSettings& settings, WorldOptions options
     refusal_ = world.error();
 }
 
-void TortureBench::add_body(Result<Mesh> mesh, const Result<MaterialPtr>& material, double density) {
+void TortureBench::add_body(Result<Mesh> mesh, const Result<MaterialPtr>& material, double density,
+                            bool lives_through_inversion) {
+  lives_through_inversion_ = lives_through_inversion;
   if (ok() && !mesh) refusal_ = mesh.error();
   if (ok() && !material) refusal_ = material.error();
   if (!ok()) return;
@@ -157,10 +155,17 @@ TortureResult TortureBench::judge(TortureResult out, const StepReport& last, boo
   const BodyMeasures m = world_->measures(body_);
   out.volume_error = m.volume_error;
   out.min_J = m.min_J;
-  if (!all_finite(world_->positions(body_)) || !all_finite(world_->velocities(body_)) ||
-      !std::isfinite(m.volume + m.volume_error + m.min_J)) {
+  // A start that is crushed or turned over has no guard until it has come right.
+  const bool guarded = !lives_through_inversion_ && settings_.poisson >= 0.49;
+  const StateJudge state(
+      *world_, {simple_promise(*world_, body_, settings_.element, lives_through_inversion_, guarded)});
+  std::vector<std::string> said = world_->warnings();
+  said.push_back(last.reason);
+  // The state of a run that was refused at its start is the start.
+  const bool moved = out.reached > 0 && last.status != StepStatus::invalid;
+  if (const auto wrong = moved ? state.accepted(*world_, said, {}) : state.finite(*world_)) {
     out.verdict = TortureVerdict::broken;
-    out.reason = "numbers that are not finite";
+    out.reason = wrong->text;
     return out;
   }
   if (last.status == StepStatus::invalid) {

@@ -22,8 +22,10 @@ class TortureBench {
   World& world() { return *world_; }
   BodyId body() const { return body_; }
 
-  // Jitters the nodes as the settings ask, gives the body its material and rows.
-  void add_body(Result<Mesh> mesh, const Result<MaterialPtr>& material, double density = 1000);
+  // Jitters the nodes as the settings ask, gives the body its material and rows. Where the law does not live
+  // through inversion, no state may have J <= 0.
+  void add_body(Result<Mesh> mesh, const Result<MaterialPtr>& material, double density = 1000,
+                bool lives_through_inversion = false);
   template <class Effect>
   std::optional<EffectId> add(Effect effect) {
     if (!ok()) return {};
@@ -50,6 +52,7 @@ class TortureBench {
   std::string refusal_;
   std::optional<World> world_;
   BodyId body_{};
+  bool lives_through_inversion_ = false;
 };
 
 // Constants by Young's modulus and the settings' Poisson's ratio.

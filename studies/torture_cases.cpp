@@ -189,7 +189,8 @@ TortureResult recovery(const TortureSettings& s,
   TortureSettings still = s;
   still.seed = 0;
   TortureBench bench(still, options);
-  bench.add_body(box(s, {0.1, 0.1, 0.1}, {3, 3, 3}), stable_neo_hookean(torture_constants(s, 30e3)));
+  bench.add_body(box(s, {0.1, 0.1, 0.1}, {3, 3, 3}), stable_neo_hookean(torture_constants(s, 30e3)), 1000,
+                 true);
   DirichletDef pins;
   pins.name = "corners";
   pins.where.body = bench.body();

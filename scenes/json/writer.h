@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
 #include "scenes/json/describe.h"
 
@@ -85,7 +86,10 @@ class Writer {
   void object(const char* key, T& value) {
     Json inner;
     write(inner, value);
-    if (!inner.empty()) json_[key] = std::move(inner);
+    // A selection must be there: what holds points alone selects no nodes.
+    constexpr bool required = std::is_same_v<T, Selection>;
+    if (required && inner.is_null()) inner = Json::object();
+    if (required || !inner.empty()) json_[key] = std::move(inner);
   }
   template <class T>
   void optional_object(const char* key, T& value, bool present) {
