@@ -68,6 +68,10 @@ struct SaddleReport {
   double force_residual = 0, row_residual = 0, linear_residual = 0;
   double step = 0;  // largest displacement of the last step [m]
   std::string message;
+  // Of a matrix that stayed singular: who is in its null vector. Nodes that may move without a force, or,
+  // where `null_rows` is not empty, effects whose rows depend on each other and the nodes around them.
+  std::vector<Index> null_nodes;
+  std::vector<std::string> null_rows;
 
   // Counts the work of an earlier solve of the same step in.
   void add_work(const SaddleReport& earlier);
@@ -147,6 +151,9 @@ class SaddlePoint {
   bool factor_shifted(double mass_scale, double shift, SaddleReport& report);
   bool add_trace(double mass_scale, SaddleReport& report);
   bool gave_up(SaddleReport& report) const;
+  void explain_singular(SaddleReport& report);
+  void name_rows(std::span<const double> null, SaddleReport& report) const;
+  void name_nodes(std::span<const double> null, SaddleReport& report) const;
   bool interrupted() const { return cancelled_ && cancelled_(); }
   // The status of a solve that failed: whatever the reason seems to be, if it was stopped that is it.
   SaddleStatus failed_as(SaddleStatus status) const {

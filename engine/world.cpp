@@ -503,7 +503,13 @@ SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
     around = look_around(x_trial, true);
     best_there_is = around.error.empty() && around.crossed + around.passing == 0;
   }
-  if (report.status == SaddleStatus::converged || best_there_is) accept(h, predicted);
+  if (report.status == SaddleStatus::converged || best_there_is) {
+    accept(h, predicted);
+  } else if (around.error.empty()) {
+    // Stencils looked at positions that are not to be; results are about those of the state.
+    around = look_around(state.x, false);
+    if (!around.error.empty()) report.message = around.error;
+  }
   return report;
 }
 

@@ -54,6 +54,24 @@ RowTreatment treatment_of(Method method) {
   return RowTreatment::automatic;
 }
 
+// What a scheme that meets rows inside of its steps cannot have: the extrapolation to their end goes through
+// what bounds hold off (at impacts energies grew by 42 % in 15 steps), and away from the law of a gas.
+std::string not_met_in_the_middle(const SystemParts& parts, const TimeScheme& scheme) {
+  if (scheme.evaluated_at() == 1) return {};
+  std::string_view what;
+  for (const auto& pool : parts.row_pools) {
+    if (pool->rows() > 0 && (pool->has_law() || !pool->lower.empty() || !pool->upper.empty()))
+      what = pool->name();
+  }
+  for (const auto& pool : parts.stencil_pools) {
+    if (pool->stencils() > 0 && (pool->has_barrier() || pool->follows())) what = pool->name();
+  }
+  if (what.empty()) return {};
+  return "world: \"" + std::string(what) + "\" must be met at the end of a step, and " +
+         std::string(scheme.name()) +
+         " meets it in the middle and extrapolates through it; use implicit_euler, bdf2 or generalized_alpha";
+}
+
 // Why a coupled pool cannot be solved as asked; empty when it can.
 std::string no_coupling(const SystemParts& parts, const WorldOptions& options) {
   const auto pool = std::find_if(parts.stencil_pools.begin(), parts.stencil_pools.end(),
@@ -110,6 +128,7 @@ Result<void> World::Impl::make_method(SystemParts parts, bool keep_solvers) {
       return Error{who + "which " + std::string(options.scheme->name()) +
                    " spreads over the middles of two steps; use another scheme"};
   }
+  if (const std::string why = not_met_in_the_middle(parts, *options.scheme); !why.empty()) return Error{why};
   if (const std::string why = no_coupling(parts, options); !why.empty()) return Error{why};
   const bool positions = options.method == Method::position_based;
   if (positions && !options.scheme->has_inertia()) {

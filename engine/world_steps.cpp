@@ -30,9 +30,41 @@ void accumulate(StepReport& total, const SaddleReport& r) {
   total.linear_residual = std::max(total.linear_residual, r.linear_residual);
 }
 
-std::string failure_text(const SaddleReport& r, double t) {
+// Where nodes of the scene are: "nodes 3, 4 of body \"finger\"".
+std::string name_nodes(std::span<const Index> nodes, const std::vector<BodyData>& bodies) {
+  std::string text;
+  const BodyData* named = nullptr;
+  for (const Index n : nodes) {
+    const auto body = std::find_if(bodies.begin(), bodies.end(), [n](const BodyData& b) {
+      return n >= b.first_node && n < b.first_node + b.mesh.node_count();
+    });
+    if (body == bodies.end() || (named && &*body != named)) continue;
+    text += (named ? ", " : nodes.size() == 1 ? "node " : "nodes ") + std::to_string(n - body->first_node);
+    named = &*body;
+  }
+  return named ? text + " of body \"" + named->name + "\"" : std::string("a point of an effect");
+}
+
+// What a matrix that stayed singular says about the scene.
+std::string singular_text(const SaddleReport& r, const std::vector<BodyData>& bodies) {
+  if (r.null_nodes.empty())
+    return "; rows without compliance may repeat each other or lack stabilization, or a part is not held";
+  const std::string where = name_nodes(r.null_nodes, bodies);
+  if (r.null_rows.empty()) {
+    return "; " + where +
+           " can move without any force (a mechanism, or a load at which the shape gives way): "
+           "hold them, or use a dynamic scheme";
+  }
+  std::string rows;
+  for (const std::string& name : r.null_rows) rows += (rows.empty() ? "\"" : ", \"") + name + "\"";
+  return "; the rows of " + rows + " depend on each other around " + where +
+         ": what one says follows from the others, or contradicts them; drop one, or give one a compliance (pressures at nodes: a stabilization)";
+}
+
+std::string failure_text(const SaddleReport& r, double t, const std::vector<BodyData>& bodies) {
   std::string text = "no equilibrium found at t = " + number(t) + ": " + std::string(to_string(r.status));
   if (!r.message.empty()) text += " (" + r.message + ")";
+  if (r.status == SaddleStatus::singular) text += singular_text(r, bodies);
   return text;
 }
 
@@ -134,7 +166,7 @@ StepReport World::step(double h, const StepBudget& budget) {
     report.rejected_substeps = 1;
     report.reason = r.status == SaddleStatus::cancelled
                         ? "the budget ran out before there was an iterate to keep"
-                        : failure_text(r, t_target);
+                        : failure_text(r, t_target, w.builder.bodies());
   }
   if (kept)
     w.describe_end(r, report);
@@ -313,8 +345,12 @@ StepReport World::advance(double h) {
     }
     ++report.rejected_substeps;
     increment = 0.5 * dt;
-    const bool hopeless = r.status == SaddleStatus::out_of_memory || r.status == SaddleStatus::not_finite;
-    if (increment >= w.options.smallest_fraction * h && !hopeless) continue;
+    // A matrix that is singular where the increment begins stays so however short it is: rows that depend on
+    // each other for good, a mechanism until it has inertia.
+    const bool singular = r.status == SaddleStatus::singular && r.iterations == 0;
+    const bool hopeless = r.status == SaddleStatus::out_of_memory || (singular && !r.null_rows.empty());
+    const bool as_short_as_need_be = increment < w.options.smallest_fraction * h || (singular && statics);
+    if (!as_short_as_need_be && !hopeless) continue;
     if (statics && !hopeless && w.options.transient_rescue && report.rescues < 3) {
       const SaddleReport rescued = w.rescue(dt);
       accumulate(report, rescued);
@@ -331,14 +367,13 @@ StepReport World::advance(double h) {
       }
     }
     report.status = StepStatus::rejected;
-    report.reason = failure_text(r, w.state.t + dt);
-    if (r.status == SaddleStatus::singular) {
+    report.reason = failure_text(r, w.state.t + dt, w.builder.bodies());
+    if (r.status != SaddleStatus::singular && !hopeless) {
       report.reason +=
-          ": rows without compliance may repeat each other or lack stabilization, or a part is not held";
-    } else if (!hopeless) {
-      report.reason += "; increments shrank to " + number(increment / h) +
-                       " of the step, the last equilibrium is at t = " + number(w.state.t) +
-                       ": probably there is none beyond (a limit point, or a load that nothing can carry)";
+          "; increments shrank to " + number(increment / h) +
+          " of the step, the last equilibrium is at t = " + number(w.state.t) +
+          ": there may be none beyond (a limit point, or a load that nothing can carry), or none "
+          "that this method reaches; try more steps, another method, or continuation() in statics";
     }
     break;
   }
