@@ -430,6 +430,7 @@ bool stuck_close_by(const SaddleReport& r) {
 }  // namespace
 
 SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
+  given_back.clear();
   constexpr int most_looks = 8;
   const double h_evaluated = options.scheme->evaluated_at() * h, t_new = state.t + h_evaluated;
   SaddleProblem problem = problem_at(t_new);
@@ -498,6 +499,7 @@ SaddleReport World::Impl::attempt(double h, const Allowance& allowance) {
   if (best_there_is && report.status != SaddleStatus::converged) {
     SaddleReport unfinished = report;
     best_there_is = admissible(h, problem, unfinished);
+    if (!best_there_is) given_back = unfinished.message;
   }
   if (best_there_is && report.status != SaddleStatus::converged) {
     around = look_around(x_trial, true);

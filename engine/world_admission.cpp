@@ -15,6 +15,10 @@ constexpr double largest_row_at_end = 0.02;
 constexpr double largest_row_of_sweeps = 0.5;
 // Of a fixed number of sweeps, which end where they end.
 constexpr double energy_gain_of_sweeps = 0.1;
+// An unfinished iterate may not have cells flatter than this and than those it began with.
+constexpr double nearly_flat = 0.2;
+// Nor miss rows by more: what one step leaves, the next has to make up for, and may not find the way.
+constexpr double largest_row_unfinished = 0.03;
 
 double energy_of_motion(const Assembly& assembly, std::span<const Vec3> v, std::span<Vec3> momentum) {
   assembly.mass_times(v, momentum);
@@ -97,8 +101,16 @@ bool World::Impl::admissible(double h, const SaddleProblem& problem, SaddleRepor
   const SaddlePoint::Stored stored = part == 1 ? newton->stored(problem, x_trial, lambda_trial)
                                                : newton->stored_at(problem, end, lambda_trial);
   if (!std::isfinite(stored.energy)) return refuse("the energy has no value there");
-  // What a budget cut short is on its way to its rows and its energy.
-  if (report.status != SaddleStatus::converged) return true;
+  // What a budget cut short is on its way to its rows and its energy; but cells that go flat leave a matrix
+  // that the next step cannot use.
+  if (report.status != SaddleStatus::converged) {
+    const bool flatter =
+        verdict.min_J < nearly_flat && verdict.min_J < admission->look(state.x, state.x).min_J;
+    if (flatter) return refuse("its iterate crushes cells to J = " + number(verdict.min_J));
+    if (stored.row > largest_row_unfinished)
+      return refuse("its iterate misses rows by " + number(stored.row) + " of their measure");
+    return true;
+  }
   const bool sweeps = options.method == Method::position_based;
   const double most = sweeps ? largest_row_of_sweeps : largest_row_at_end;
   if ((part != 1 || sweeps) && !(stored.row <= most)) {

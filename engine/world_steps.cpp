@@ -58,7 +58,8 @@ std::string singular_text(const SaddleReport& r, const std::vector<BodyData>& bo
   std::string rows;
   for (const std::string& name : r.null_rows) rows += (rows.empty() ? "\"" : ", \"") + name + "\"";
   return "; the rows of " + rows + " depend on each other around " + where +
-         ": what one says follows from the others, or contradicts them; drop one, or give one a compliance (pressures at nodes: a stabilization)";
+         ": what one says follows from the others, or contradicts them; drop one, or give one a compliance "
+         "(pressures at nodes: a stabilization)";
 }
 
 std::string failure_text(const SaddleReport& r, double t, const std::vector<BodyData>& bodies) {
@@ -164,7 +165,10 @@ StepReport World::step(double h, const StepBudget& budget) {
   } else {
     report.status = StepStatus::rejected;
     report.rejected_substeps = 1;
-    report.reason = r.status == SaddleStatus::cancelled
+    report.reason = !w.given_back.empty() ? "the budget ran out after " + std::to_string(r.iterations) +
+                                                " iterations, and the state is as it was: " + w.given_back +
+                                                "; give more iterations or shorter steps"
+                    : r.status == SaddleStatus::cancelled
                         ? "the budget ran out before there was an iterate to keep"
                         : failure_text(r, t_target, w.builder.bodies());
   }

@@ -19,6 +19,10 @@ T value(isochor::Result<T> result) {
   return std::move(result).value();
 }
 
+inline void value(const isochor::Result<void>& result) {
+  if (!result) FAIL(result.error());
+}
+
 inline isochor::MaterialPtr neo_hookean(double young, double poisson,
                                         isochor::BulkChoice bulk = isochor::BulkChoice::consistent) {
   isochor::ElasticConstants c;
