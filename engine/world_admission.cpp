@@ -15,10 +15,11 @@ constexpr double largest_row_at_end = 0.02;
 constexpr double largest_row_of_sweeps = 0.5;
 // Of a fixed number of sweeps, which end where they end.
 constexpr double energy_gain_of_sweeps = 0.1;
-// An unfinished iterate may not have cells flatter than this and than those it began with.
-constexpr double nearly_flat = 0.2;
-// Nor miss rows by more: what one step leaves, the next has to make up for, and may not find the way.
-constexpr double largest_row_unfinished = 0.03;
+// An unfinished iterate may not have cells flatter than this and than those it began with. Where rows have
+// bounds (contact), nor miss rows by more than that: held and free rows change about there, and the next step
+// may not find its way.
+constexpr double nearly_flat = 0.05, nearly_flat_with_bounds = 0.2;
+constexpr double largest_row_with_bounds = 0.03;
 
 double energy_of_motion(const Assembly& assembly, std::span<const Vec3> v, std::span<Vec3> momentum) {
   assembly.mass_times(v, momentum);
@@ -104,10 +105,11 @@ bool World::Impl::admissible(double h, const SaddleProblem& problem, SaddleRepor
   // What a budget cut short is on its way to its rows and its energy; but cells that go flat leave a matrix
   // that the next step cannot use.
   if (report.status != SaddleStatus::converged) {
-    const bool flatter =
-        verdict.min_J < nearly_flat && verdict.min_J < admission->look(state.x, state.x).min_J;
+    const bool bounds = system->has_bounds();
+    const bool flatter = verdict.min_J < (bounds ? nearly_flat_with_bounds : nearly_flat) &&
+                         verdict.min_J < admission->look(state.x, state.x).min_J;
     if (flatter) return refuse("its iterate crushes cells to J = " + number(verdict.min_J));
-    if (stored.row > largest_row_unfinished)
+    if (bounds && stored.row > largest_row_with_bounds)
       return refuse("its iterate misses rows by " + number(stored.row) + " of their measure");
     return true;
   }

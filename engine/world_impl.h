@@ -72,6 +72,9 @@ struct World::Impl {
   std::string energy_gained(double h, const SaddlePoint::Stored& stored);
   bool admissible(double h, const SaddleProblem& problem, SaddleReport& report);
   void describe_end(const SaddleReport& solve, StepReport& report);
+  // The last state that a step arrived at in balance, while the present one is unfinished.
+  std::optional<State> settled;
+  bool give_back_unfinished(StepReport& report);
   std::string given_back;  // why the last attempt did not keep its iterate although it might have
   double moved = 0;        // farthest way of a node in the last increment [m]
   std::string led_away;    // of this step: an increment that ended far from where it began

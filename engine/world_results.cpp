@@ -281,6 +281,7 @@ Result<void> World::load(std::span<const std::byte> bytes) {
   if (amounts.size() != 7 * with_amount) return Error{"load: the saved state belongs to other effects"};
   w.load_amounts(amounts);
   w.state = std::move(next);
+  w.settled.reset();
   w.reactions = std::move(reactions);
   if (const auto around = w.look_around(w.state.x, false); !around.error.empty()) return Error{around.error};
   return {};

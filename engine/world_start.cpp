@@ -34,6 +34,7 @@ Result<void> World::set_velocities(BodyId body, std::span<const Vec3> velocities
     return Error{"set_velocities: the scheme of this world is " + std::string(w.options.scheme->name()) +
                  ", in which nothing has a velocity; use a scheme of dynamics"};
   }
+  w.settled.reset();  // what a host sets is where it wants to go on from
   const BodyData& b = w.builder.body(body);
   if (auto r = check_nodes("set_velocities", "velocities", b, velocities); !r) return r;
   std::copy(velocities.begin(), velocities.end(), w.state.v.begin() + b.first_node);
@@ -48,6 +49,7 @@ Result<void> World::set_positions(BodyId body, std::span<const Vec3> positions) 
   if (!w.builder.has_body(body)) {
     return Error{"set_positions: there is no body number " + std::to_string(static_cast<Index>(body))};
   }
+  w.settled.reset();  // what a host sets is where it wants to go on from
   const BodyData& b = w.builder.body(body);
   if (auto r = check_nodes("set_positions", "positions", b, positions); !r) return r;
   const auto first = at(b.first_node);

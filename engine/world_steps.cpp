@@ -90,6 +90,20 @@ void World::Impl::take_cancel(StepReport& report) {
   report.reason = "cancelled by the host";
 }
 
+// A step failed from a state that a budget had left unfinished: that is no state to go on from, and the last
+// one in balance takes its place.
+bool World::Impl::give_back_unfinished(StepReport& report) {
+  if (!settled || report.status != StepStatus::rejected) return false;
+  state = *settled;
+  settled.reset();
+  const Surroundings around = look_around(state.x, false);
+  report.reason +=
+      "; the step began at a state that a budget had left unfinished, so the last one in balance, of t = " +
+      number(state.t) + ", is back";
+  if (!around.error.empty()) report.reason += " (" + around.error + ")";
+  return true;
+}
+
 StepReport World::Impl::cancelled() {
   StepReport report;
   take_cancel(report);
@@ -151,6 +165,8 @@ StepReport World::step(double h, const StepBudget& budget) {
   if (budget.seconds > 0)
     w.deadline = start + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
                              std::chrono::duration<double>(std::min(budget.seconds, 1e6)));
+  const bool was_settled = !w.settled;
+  if (allowance.keep_unfinished && was_settled) w.settled = w.state;
   const SaddleReport r = w.attempt(h, allowance);
   w.deadline.reset();
   accumulate(report, r);
@@ -176,6 +192,9 @@ StepReport World::step(double h, const StepBudget& budget) {
     w.describe_end(r, report);
   else
     w.load_amounts(w.amounts_before);
+  // What is in balance needs nothing to fall back to, nor does what a rejected step left alone.
+  if (r.status == SaddleStatus::converged || (!kept && was_settled)) w.settled.reset();
+  if (w.given_back.empty() && r.status != SaddleStatus::cancelled) w.give_back_unfinished(report);
   w.finish_report(report, before, seconds_since(start));
   return report;
 }
@@ -382,6 +401,8 @@ StepReport World::advance(double h) {
     break;
   }
   if (report.status == StepStatus::converged) w.state.t = t_end;
+  if (report.substeps > 0) w.settled.reset();
+  w.give_back_unfinished(report);
   w.finish_report(report, before, seconds_since(start));
   return report;
 }

@@ -233,7 +233,9 @@ class World {
   StepReport step(double h);
   // The same within a budget, for hosts with a frame to draw: a step that does not converge in time is kept
   // at its last iterate, which has gone down in energy or towards its rows, and reported `unfinished`.
-  // Nothing is kept that is not finite.
+  // Nothing is kept that is not finite, or that has crushed cells or missed rows in such a way that the next
+  // step would not find its way; then the step is rejected. Should a step fail that begins at an unfinished
+  // state, the last state in balance takes its place, time included.
   StepReport step(double h, const StepBudget& budget);
   // As many increments as it takes to advance by h: halves increments that fail, lengthens them again. On
   // failure the state is the last one that converged and `time` says how far it got.
