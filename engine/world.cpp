@@ -134,7 +134,6 @@ void World::Impl::tell_idle_rows() {
 void World::Impl::allocate() {
   const std::size_t n = at(system->nodes());
   const auto& parts = system->parts();
-  state.layout = system->layout();
   state.x = parts.rest;
   state.v.assign(n, Vec3{});
   state.lambda.assign(at(system->rows()), 0.0);
@@ -157,6 +156,7 @@ void World::Impl::allocate() {
   if (controls_error()) state_before = state;
   if (options.scheme->has_inertia()) ahead = state;
   memory_before.resize(at(system->memory()));
+  if (system->has_followers()) first_stencils = parts.stencil_pools;
   for (Index p = 0; p < static_cast<Index>(parts.row_pools.size()); ++p) {
     const RowPool& pool = *parts.row_pools[at(p)];
     if (pool.memory() == 0) continue;
@@ -563,6 +563,13 @@ void World::Impl::load_amounts(std::span<const double> all) {
   for (const auto& instance : instances) {
     if (Amount* a = instance->amount()) a->load(all);
   }
+}
+
+bool World::Impl::amounts_fit(std::span<const double> all) const {
+  for (const auto& instance : instances) {
+    if (instance->amount() && !Amount::take(all)) return false;
+  }
+  return all.empty();
 }
 
 void World::Impl::begin_amounts(double t0, double t1) {
