@@ -17,6 +17,7 @@ enum Exit : int {
   bad_input = 2,
   not_converged = 3,
   out_of_budget = 4,
+  not_written = 5,
   interrupted = 130,  // as shells report SIGINT
 };
 
@@ -27,6 +28,8 @@ struct RunArguments {
   int threads = 0;
   std::optional<double> budget;
   bool quiet = false, json = false, explain = false, accuracy = false;
+  bool resume = false;
+  std::optional<double> checkpoint;  // [s], in place of outputs.checkpoint_seconds
 };
 
 // Tables of `run --explain`, after the run.

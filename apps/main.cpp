@@ -11,7 +11,7 @@ using namespace isochor;
 
 constexpr const char* kRunFooter =
     "Exit codes: 0 success, 1 internal error, 2 bad input, 3 not converged (what was reached is kept),\n"
-    "4 stopped by the budget, 130 interrupted.\n"
+    "4 stopped by the budget, 5 outputs cannot be written, 130 interrupted.\n"
     "Example: isochor run finger --set cavities.chamber.amount=20000 --set bodies[0].element=tet10";
 
 void add_run(CLI::App& top, app::RunArguments& a) {
@@ -28,6 +28,10 @@ void add_run(CLI::App& top, app::RunArguments& a) {
   c->add_option("--budget", a.budget, "Stop after this much wall time")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber);
+  c->add_flag("--resume", a.resume, "Go on from the last checkpoint in the folder of outputs");
+  c->add_option("--checkpoint", a.checkpoint, "Wall time between checkpoints; default 60, 0: none")
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber);
   c->add_flag("--quiet", a.quiet, "Print errors only");
   c->add_flag("--json", a.json, "Print the summary as JSON instead of tables");
   c->add_flag("--explain", a.explain, "Say which effects are on, why, and their share of time and memory");

@@ -244,12 +244,14 @@ FollowAnswer SurfaceContactPool::followed(const FollowRequest& q) const {
   return answer;
 }
 
-Result<std::shared_ptr<const StencilPool>> SurfaceContactPool::restored(std::span<const double> memory) const {
+Result<std::shared_ptr<const StencilPool>> SurfaceContactPool::restored(
+    std::span<const double> memory) const {
   const auto per = static_cast<std::size_t>(memory_per_point());
   std::vector<Index> kept(center_.size());
   for (std::size_t s = 0; s < kept.size(); ++s) {
     const double kept_number = memory[per * s];
-    if (!(kept_number >= 0 && kept_number <= setup_->skin->triangles()) || kept_number != std::floor(kept_number)) {
+    if (!(kept_number >= 0 && kept_number <= setup_->skin->triangles()) ||
+        kept_number != std::floor(kept_number)) {
       return Error{"contact \"" + setup_->name + "\" is said to be close to triangle number " +
                    number(kept_number - 1) + " of " + std::to_string(setup_->skin->triangles())};
     }

@@ -36,8 +36,11 @@ class ByteWriter {
     put(v.has_value());
     if (v) put(*v);
   }
-  // Ends the bytes with a checksum over all of them.
-  std::vector<std::byte> sealed() && {
+  // Ends the bytes with a checksum over all of them; their number goes where a zero of 64 bits was put for
+  // it.
+  std::vector<std::byte> sealed(std::size_t length_at) && {
+    const std::uint64_t length = bytes_.size() + sizeof(std::uint64_t);
+    std::memcpy(bytes_.data() + length_at, &length, sizeof length);
     Hash h;
     h.add(std::span<const std::byte>(bytes_));
     put(h.value());

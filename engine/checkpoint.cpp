@@ -3,6 +3,7 @@
 // checksum over all of it. A state is loaded whole or not at all.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "engine/bytes.h"
 #include "engine/fingerprint.h"
@@ -62,11 +63,10 @@ void describe_body(const BodyData& body, std::vector<ScenePart>& parts) {
   const Mesh& m = body.mesh;
   parts.push_back({"the element" + who,
                    Fingerprint().add(body.element, body.guard_threshold, body.guard_stiffness).value()});
-  parts.push_back(
-      {"the mesh" + who, Fingerprint()
-                             .add(m.cell_type, m.nodes, m.cells, m.cell_region, m.regions, m.surfaces,
-                                  m.node_sets, m.fields)
-                             .value()});
+  parts.push_back({"the mesh" + who, Fingerprint()
+                                         .add(m.cell_type, m.nodes, m.cells, m.cell_region, m.regions,
+                                              m.surfaces, m.node_sets, m.fields)
+                                         .value()});
   for (const RegionData& region : body.regions) {
     const std::string where = body.regions.size() > 1 ? " in region \"" + region.name + "\"" : "";
     parts.push_back({"the material" + who + where, fingerprint_of(region)});
@@ -178,16 +178,13 @@ Result<void> World::Impl::restore_stencils(std::span<const double> memory) {
 std::vector<std::byte> World::save() const {
   Impl& w = *impl_;
   if (!w.compile()) return {};
-  Content content{w.scene_parts(), w.state.t, w.state.x, w.state.v, w.state.lambda, w.state.extra, {}, w.reactions};
+  Content content{w.scene_parts(), w.state.t,     w.state.x, w.state.v,
+                  w.state.lambda,  w.state.extra, {},        w.reactions};
   w.save_amounts(content.amounts);
-  const auto written = [&content](std::uint64_t bytes) {
-    ByteWriter out;
-    out.put(Header{kMagic, kVersion, bytes});
-    out.put(content);
-    return std::move(out).sealed();
-  };
-  const std::uint64_t size = written(0).size();
-  return written(size);
+  ByteWriter out;
+  out.put(Header{});
+  out.put(content);
+  return std::move(out).sealed(offsetof(Header, bytes));
 }
 
 Result<void> World::load(std::span<const std::byte> bytes) {
@@ -215,7 +212,8 @@ Result<void> World::load(std::span<const std::byte> bytes) {
     return damaged("node " + std::to_string(i) + " is more than " + number(limit) + " m away");
   }
   if (!w.amounts_fit(c.amounts)) return damaged("its amounts are none of these effects");
-  if (auto r = w.restore_stencils(std::span<const double>(c.extra).first(at(w.system->memory()))); !r) return r;
+  if (auto r = w.restore_stencils(std::span<const double>(c.extra).first(at(w.system->memory()))); !r)
+    return r;
   w.load_amounts(c.amounts);
   w.state.t = c.t;
   w.state.x.swap(c.x);

@@ -1,5 +1,5 @@
-// A number for what a definition says: two scenes whose fingerprints are equal are the same. It is made of the
-// numbers and words of the definitions alone, so that it is the same in every build and on every machine.
+// A number for what a definition says: two scenes whose fingerprints are equal are the same. It is made of
+// the numbers and words of the definitions alone, so that it is the same in every build and on every machine.
 #pragma once
 
 #include <array>

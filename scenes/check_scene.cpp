@@ -294,6 +294,14 @@ Result<void> check_scene(const SceneDef& s) {
     return Error{"outputs.every = " + std::to_string(s.outputs.every) +
                  "; give 0 (no frames) or a number of steps"};
   }
+  if (s.outputs.checkpoint_steps < 0) {
+    return Error{"outputs.checkpoint_steps = " + std::to_string(s.outputs.checkpoint_steps) +
+                 "; give 0 (none) or a number of steps"};
+  }
+  if (!(s.outputs.checkpoint_seconds >= 0) || !std::isfinite(s.outputs.checkpoint_seconds)) {
+    return Error{"outputs.checkpoint_seconds = " + number(s.outputs.checkpoint_seconds) +
+                 " s; give 0 (none) or a positive number"};
+  }
   return check_metrics(s);
 }
 

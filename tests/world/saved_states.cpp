@@ -144,7 +144,8 @@ const Scene kScenes[] = {
 
 using Change = std::function<void(Parts&)>;
 
-World make(const Scene& scene, const Change& change = [](Parts&) {}) {
+World make(
+    const Scene& scene, const Change& change = [](Parts&) {}) {
   Parts p;
   scene.change(p);
   change(p);
@@ -318,7 +319,10 @@ TEST_CASE("a state of another scene is refused, and the message says which part 
       {0, "effect \"cable\"", [](Parts& p) { p.cable.amount.points[1][0] = 0.05; }},
       {0, "effect \"hold z0\"", [](Parts& p) { p.held = 0.0011; }},
       {1, "effect \"floor\"", [](Parts& p) { p.floor.friction = 0.31; }},
-      {1, "effect \"floor\"", [](Parts& p) { p.floor.obstacle.axis = {0, 0.01, 1}; }},
+      {1, "effect \"floor\"",
+       [](Parts& p) {
+         p.floor.obstacle.axis = {0, 0.01, 1};
+       }},
       {1, "effect \"touch\"", [](Parts& p) { p.touch.friction = 0.21; }},
       {1, "effect \"pull\"", [](Parts& p) { p.pull.traction.x = 21; }},
       {3, "effect \"pull\"", [](Parts& p) { p.pull.amount = Curve::ramp(1, 2); }},
