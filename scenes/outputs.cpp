@@ -201,7 +201,7 @@ Result<RunOutputs> RunOutputs::reopen(const std::string& folder, const RunView& 
   return outputs;
 }
 
-Result<void> RunOutputs::keep(RunCheckpoint& checkpoint) {
+Result<void> RunOutputs::keep(const RunCheckpoint& checkpoint) {
   return write_checkpoint((fs::path(folder_) / kCheckpoint).string(), checkpoint);
 }
 

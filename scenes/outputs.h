@@ -35,7 +35,8 @@ class RunOutputs {
 
   // After a step (or the rest state): frame, table and summary so far. `last` forces a frame.
   Result<void> record(const RunView& view, bool last);
-  Result<void> keep(RunCheckpoint& checkpoint);
+  Result<void> keep(const RunCheckpoint& checkpoint);
+  std::uint64_t page_bytes() const { return journal_.bytes(); }
   // Checkpoints are done with where the run has converged.
   Result<void> finish(const RunView& view);
   // Where outputs could not be written the summary must not go on saying that the run has not ended.

@@ -46,7 +46,7 @@ class Run {
 
  private:
   bool keeps() const { return scene_.outputs.checkpoint_steps > 0 || scene_.outputs.checkpoint_seconds > 0; }
-  void remember(int step);
+  void remember(int step, const RunOutputs& outputs);
   bool keep(RunOutputs* outputs);
   bool keep_if_due(RunOutputs* outputs);
   void record(int step, const StepReport& report);
@@ -168,8 +168,9 @@ void Run::record(int step, const StepReport& report) {
 }
 
 // A step that ends early is no place to go on from: what was never stopped did not end there.
-void Run::remember(int step) {
+void Run::remember(int step, const RunOutputs& outputs) {
   complete_.step = step;
+  complete_.page_bytes = outputs.page_bytes();
   const std::vector<std::byte> state = built_.world.save();
   complete_.state.assign(reinterpret_cast<const char*>(state.data()), state.size());
   complete_.newton_iterations = result_.newton_iterations;
@@ -221,7 +222,6 @@ Result<void> Run::resume(const RunCheckpoint& c) {
   }
   wall_before_ = result_.wall_s = c.wall_s;
   kept_step_ = c.step;
-  remember(c.step);
   return {};
 }
 
@@ -270,10 +270,11 @@ void Run::march(RunOutputs* outputs) {
   result_.status = RunStatus::interrupted;
   result_.reason = "the run has not ended yet";
   const bool keeping = outputs && keeps();
+  if (keeping && result_.resumed_at >= 0) remember(result_.resumed_at, *outputs);
   if (result_.records.empty()) {
     record(0, {});
     if (!write(outputs, false)) return;
-    if (keeping) remember(0);
+    if (keeping) remember(0, *outputs);
   }
   for (int step = result_.records.back().step + 1; step <= plan.steps; ++step) {
     const double before = world.time();
@@ -305,7 +306,7 @@ void Run::march(RunOutputs* outputs) {
     if (keeping && over) keep(outputs);
     if (over || last) return;
     if (!keeping) continue;
-    remember(step);
+    remember(step, *outputs);
     if (!keep_if_due(outputs)) return;
   }
 }

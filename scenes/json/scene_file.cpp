@@ -216,8 +216,8 @@ std::string scene_difference(const std::string& kept, const SceneDef& scene) {
       if (all.empty()) continue;
     }
     const std::string where = dotted(path);
-    if (op == "remove") return where + " was " + shortened(before[Json::json_pointer(path)]) + " and is gone";
-    if (op == "add") return where + " is new: " + shortened(change["value"]);
+    if (op == "remove") return where + " was " + shortened(before[Json::json_pointer(path)]) + " and is left out";
+    if (op == "add") return where + " was left out and is " + shortened(change["value"]);
     return where + " was " + shortened(before[Json::json_pointer(path)]) + " and is " +
            shortened(change["value"]);
   }
