@@ -140,6 +140,8 @@ int exit_code(RunStatus status) {
       return bad_input;
     case RunStatus::not_written:
       return not_written;
+    case RunStatus::out_of_memory:
+      return out_of_memory;
     case RunStatus::failed:
       break;
   }

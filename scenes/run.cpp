@@ -1,8 +1,11 @@
 #include "scenes/run.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <new>
 #include <thread>
 
 #include "engine/text.h"
@@ -178,13 +181,13 @@ void Run::remember(int step, const RunOutputs& outputs) {
   complete_.solves = result_.solves;
   complete_.wall_s = result_.wall_s;
   complete_.stages = result_.stages;
+  complete_.warnings = result_.warnings;
 }
 
 bool Run::keep(RunOutputs* outputs) {
   if (complete_.step == kept_step_) return true;
   if (complete_.scene.empty()) complete_.scene = to_json(scene_);
   complete_.program = version() + ", " + build_description();
-  complete_.warnings = result_.warnings;
   complete_.records = result_.records;
   while (complete_.records.back().step > complete_.step) complete_.records.pop_back();
   auto r = outputs->keep(complete_);
@@ -212,6 +215,7 @@ Result<void> Run::resume(const RunCheckpoint& c) {
   result_.solves = c.solves;
   result_.stages = c.stages;
   result_.state_hash = built_.world.state_hash();
+  for (const StepRecord& r : c.records) doubtful_steps_ += r.warning.empty() ? 0 : 1;
   for (const std::string& text : c.warnings) {
     const auto& known = result_.warnings;
     if (std::find(known.begin(), known.end(), text) == known.end()) result_.warnings.push_back(text);
@@ -327,6 +331,8 @@ const char* to_string(RunStatus status) {
       return "bad_input";
     case RunStatus::not_written:
       return "not_written";
+    case RunStatus::out_of_memory:
+      return "out_of_memory";
     case RunStatus::failed:
       break;
   }
@@ -379,27 +385,44 @@ bool find_checkpoint(const SceneDef& scene, const RunOptions& options,
 
 }  // namespace
 
-RunResult run_scene(const SceneDef& scene, const RunOptions& options) {
+namespace {
+
+void out_of_memory(const std::string& doing, RunResult& result) {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  result.status = RunStatus::out_of_memory;
+  result.reason = "memory ran out while " + doing + ", with " + std::to_string(used.ru_maxrss / 1024) +
+                  " MB in use at most; take a coarser mesh or analysis.solver = \"iterative\", or give the "
+                  "process more (ulimit -v, limits of the container)";
+}
+
+std::string solving(const RunResult& result) {
+  const int step = result.records.empty() ? 0 : result.records.back().step + 1;
+  return "solving step " + std::to_string(step) + " of " + std::to_string(result.steps_asked) + " for " +
+         std::to_string(result.size.displacement_unknowns) + " displacements and " +
+         std::to_string(result.size.multipliers) + " multipliers";
+}
+
+void run_into(const SceneDef& scene, const RunOptions& options, RunResult& result) {
   const auto start = Clock::now();
-  RunResult result;
   result.scene = scene.name;
   const auto hardware = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   result.threads = options.threads > 0 ? options.threads : hardware;
   if (options.budget && !(*options.budget > 0)) {
     result.reason = "budget = " + number(*options.budget) + " s; it must be positive";
-    return result;
+    return;
   }
   std::optional<RunCheckpoint> checkpoint;
-  if (options.resume && !find_checkpoint(scene, options, checkpoint, result)) return result;
+  if (options.resume && !find_checkpoint(scene, options, checkpoint, result)) return;
   if (checkpoint && checkpoint->ended) {
     result.status = RunStatus::converged;
     result.ended_before = true;
-    return result;
+    return;
   }
   auto built = build(scene, {options.threads});
   if (!built) {
     result.reason = built.error();
-    return result;
+    return;
   }
   Run run(scene, options, built.value(), result, start);
   run.describe();
@@ -407,15 +430,31 @@ RunResult run_scene(const SceneDef& scene, const RunOptions& options) {
   std::optional<RunOutputs> outputs;
   if (!options.folder.empty()) {
     outputs = open_outputs(scene, options, built.value(), run, checkpoint, result);
-    if (!outputs) return result;
+    if (!outputs) return;
   }
-  run.march(outputs ? &*outputs : nullptr);
+  try {
+    run.march(outputs ? &*outputs : nullptr);
+  } catch (const std::bad_alloc&) {
+    out_of_memory(solving(result), result);
+  }
   result.metrics = evaluate_metrics(scene, result.records);
   const RunView view{scene, built.value(), result};
   if (outputs && result.status != RunStatus::not_written) {
     if (auto r = outputs->finish(view); !r) run.not_written(r.error());
   }
   if (outputs && result.status == RunStatus::not_written) outputs->tell_failure(view);
+}
+
+}  // namespace
+
+RunResult run_scene(const SceneDef& scene, const RunOptions& options) {
+  RunResult result;
+  try {
+    run_into(scene, options, result);
+  } catch (const std::bad_alloc&) {
+    if (result.status != RunStatus::out_of_memory)
+      out_of_memory("reading meshes and building the world", result);
+  }
   return result;
 }
 

@@ -45,7 +45,8 @@ enum class RunStatus : std::uint8_t {
   interrupted,
   bad_input,    // nothing was solved
   not_written,  // outputs could not be written: a full disk
-  failed,       // a fault of ours
+  out_of_memory,
+  failed,  // a fault of ours
 };
 const char* to_string(RunStatus status);
 
