@@ -9,6 +9,7 @@
 #include "engine/builder.h"
 #include "engine/newton.h"
 #include "engine/recovery.h"
+#include "engine/text.h"
 #include "engine/time_scheme.h"
 #include "engine/world_impl.h"
 
@@ -31,6 +32,17 @@ Result<World> World::create(WorldOptions options, std::uint64_t abi) {
         "(generalized_alpha takes a spectral radius from 0 to 1)"};
   if (!(options.force_tolerance > 0) || !(options.row_tolerance > 0)) {
     return Error{"world: tolerances must be positive; the defaults are 1e-9 and 1e-10"};
+  }
+  if (!std::isfinite(options.force_tolerance) || !std::isfinite(options.row_tolerance)) {
+    return Error{"world: tolerances must be finite; the defaults are 1e-9 and 1e-10"};
+  }
+  if (!(options.smallest_fraction > 0 && options.smallest_fraction <= 1)) {
+    return Error{"world: smallest_fraction = " + number(options.smallest_fraction) +
+                 "; it must be positive and at most 1"};
+  }
+  if (!(options.time_error >= 0) || !std::isfinite(options.time_error)) {
+    return Error{"world: time_error = " + number(options.time_error) +
+                 "; it must be zero (no control) or positive"};
   }
   if (options.sweeps < 1 || options.sweeps > 100000) {
     return Error{"world: sweeps = " + std::to_string(options.sweeps) + "; give 1 to 100000"};
