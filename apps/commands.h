@@ -17,6 +17,8 @@ enum Exit : int {
   bad_input = 2,
   not_converged = 3,
   out_of_budget = 4,
+  not_written = 5,
+  out_of_memory = 6,
   interrupted = 130,  // as shells report SIGINT
 };
 
@@ -27,7 +29,13 @@ struct RunArguments {
   int threads = 0;
   std::optional<double> budget;
   bool quiet = false, json = false, explain = false, accuracy = false;
+  bool resume = false;
+  std::optional<double> checkpoint;  // [s], in place of outputs.checkpoint_seconds
 };
+
+// Where memory ran out: says so, and ends the process at once. Threads of libraries that found no memory
+// would be waited for without end.
+[[noreturn]] void end_without_memory();
 
 // Tables of `run --explain`, after the run.
 void print_explanation(const Explanation& explanation, const RunResult& result);

@@ -1,7 +1,10 @@
 // isochor: list, run, view, check and show scenes, and studies, from the command line.
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <new>
 
 #include "apps/commands.h"
 
@@ -11,7 +14,7 @@ using namespace isochor;
 
 constexpr const char* kRunFooter =
     "Exit codes: 0 success, 1 internal error, 2 bad input, 3 not converged (what was reached is kept),\n"
-    "4 stopped by the budget, 130 interrupted.\n"
+    "4 stopped by the budget, 5 outputs cannot be written,\n6 out of memory, 130 interrupted.\n"
     "Example: isochor run finger --set cavities.chamber.amount=20000 --set bodies[0].element=tet10";
 
 void add_run(CLI::App& top, app::RunArguments& a) {
@@ -28,6 +31,10 @@ void add_run(CLI::App& top, app::RunArguments& a) {
   c->add_option("--budget", a.budget, "Stop after this much wall time")
       ->type_name("SECONDS")
       ->check(CLI::PositiveNumber);
+  c->add_flag("--resume", a.resume, "Go on from the last checkpoint in the folder of outputs");
+  c->add_option("--checkpoint", a.checkpoint, "Wall time between checkpoints; default 60, 0: none")
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber);
   c->add_flag("--quiet", a.quiet, "Print errors only");
   c->add_flag("--json", a.json, "Print the summary as JSON instead of tables");
   c->add_flag("--explain", a.explain, "Say which effects are on, why, and their share of time and memory");
@@ -115,9 +122,36 @@ int dispatch(int argc, char** argv) {
 
 }  // namespace
 
+namespace {
+
+// What was printed counts as done only when it has arrived.
+int checked_output(int code) {
+  if (code == app::out_of_memory) {
+    std::fflush(stdout);
+    std::_Exit(code);
+  }
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  std::fprintf(stderr,
+               "isochor: standard output could not be written: its reader is gone, or the disk is full; what "
+               "went into files is there\n");
+  return code == app::success ? app::not_written : code;
+}
+
+}  // namespace
+
+void app::end_without_memory() {
+  std::fputs("isochor: out of memory; take a smaller mesh or give the process more\n", stderr);
+  std::fflush(stdout);
+  std::_Exit(out_of_memory);
+}
+
 int main(int argc, char** argv) {
+  // A reader that goes away is told by the writes that fail, and ends no run.
+  std::signal(SIGPIPE, SIG_IGN);
   try {
-    return dispatch(argc, argv);
+    return checked_output(dispatch(argc, argv));
+  } catch (const std::bad_alloc&) {
+    return app::end_without_memory();
   } catch (const std::exception& e) {
     std::fprintf(stderr, "isochor: internal error: %s\n", e.what());
   } catch (...) {

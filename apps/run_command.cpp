@@ -138,6 +138,10 @@ int exit_code(RunStatus status) {
       return interrupted;
     case RunStatus::bad_input:
       return bad_input;
+    case RunStatus::not_written:
+      return not_written;
+    case RunStatus::out_of_memory:
+      return out_of_memory;
     case RunStatus::failed:
       break;
   }
@@ -152,6 +156,7 @@ int run(const RunArguments& a) {
     std::fprintf(stderr, "isochor: %s\n", scene.error().c_str());
     return bad_input;
   }
+  if (a.checkpoint) scene.value().outputs.checkpoint_seconds = *a.checkpoint;
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   const bool tables = !a.quiet && !a.json;
@@ -159,6 +164,7 @@ int run(const RunArguments& a) {
   options.folder = a.folder.empty() ? "out/" + scene.value().name : a.folder;
   options.threads = a.threads;
   options.budget = a.budget;
+  options.resume = a.resume;
   options.stop = [] { return g_signals.load() > 0; };
   options.log = [&](const std::string& text) {
     if (!a.quiet) std::fprintf(stderr, "isochor: note: %s\n", text.c_str());
@@ -175,6 +181,11 @@ int run(const RunArguments& a) {
   if (result.status == RunStatus::bad_input) {
     std::fprintf(stderr, "isochor: %s\n", result.reason.c_str());
     return bad_input;
+  }
+  if (result.ended_before) {
+    std::fprintf(stderr, "isochor: note: the run in %s has converged already; there is nothing to resume\n",
+                 options.folder.c_str());
+    return success;
   }
   std::optional<Accuracy> accuracy;
   if (a.accuracy) {

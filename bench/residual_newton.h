@@ -20,6 +20,7 @@ using namespace isochor;
 class StressOnly : public Material {
  public:
   virtual void stress(const Lanes F[9], Lanes P[9]) const = 0;
+  void describe(Fingerprint& f) const override { f.add(name()); }
   void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
     store(broadcast(0), r.psi);
     if (want == Want::value) return;

@@ -55,6 +55,7 @@ class CableEffect final : public EffectSource {
  public:
   explicit CableEffect(CableDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
     if (def_.points.size() + (def_.from ? 1 : 0) + (def_.to ? 1 : 0) < 2 || def_.points.empty()) {

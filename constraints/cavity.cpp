@@ -361,6 +361,7 @@ class CavityEffect final : public EffectSource {
  public:
   explicit CavityEffect(CavityDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
     for (const auto& p : def_.amount.points) {

@@ -186,6 +186,7 @@ class ValveEffect final : public EffectSource {
  public:
   explicit ValveEffect(ValveDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
   Result<void> check() const override {
     if (!(def_.conductance > 0) || !std::isfinite(def_.conductance)) {
       return Error{who() + "conductance = " + std::to_string(def_.conductance) +

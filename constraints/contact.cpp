@@ -98,6 +98,7 @@ class ContactEffect final : public EffectSource {
  public:
   explicit ContactEffect(ContactDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
     if (auto r = check_obstacle(def_.obstacle); !r) return Error{who() + r.error()};

@@ -161,6 +161,7 @@ class DampingEffect final : public EffectSource {
  public:
   explicit DampingEffect(DampingDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
     for (const auto& [key, value, unit] :

@@ -100,6 +100,7 @@ class DirichletEffect final : public EffectSource {
  public:
   explicit DirichletEffect(DirichletDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
     for (const Vec3& d : def_.directions) {

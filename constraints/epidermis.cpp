@@ -72,6 +72,7 @@ class EpidermisEffect final : public EffectSource {
  public:
   explicit EpidermisEffect(EpidermisDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
     if (def_.surfaces.empty()) {

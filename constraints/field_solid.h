@@ -17,6 +17,7 @@ class FieldSolid final : public Solid {
   std::size_t crossings(const Vec3& y0, const Vec3& y1, std::span<double> out) const override;
   std::array<Vec3, 2> box() const override { return {low_, high_}; }
   TriangleSurface outline() const override;
+  void describe(Fingerprint& f) const override { f.add(grid_); }
 
  private:
   void fit();

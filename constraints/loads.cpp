@@ -49,6 +49,7 @@ class TractionEffect final : public EffectSource {
  public:
   explicit TractionEffect(TractionDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
     if (!finite(def_.traction) || !finite(def_.total_force)) {
@@ -91,6 +92,7 @@ class PointForceEffect final : public EffectSource {
  public:
   explicit PointForceEffect(PointForceDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
     if (!finite(def_.force)) return Error{"force \"" + def_.name + "\": force must be finite numbers"};

@@ -60,6 +60,7 @@ class MembraneEffect final : public EffectSource {
  public:
   explicit MembraneEffect(MembraneDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
     if (def_.surfaces.empty()) {

@@ -17,6 +17,7 @@ class MeshSolid final : public Solid {
   std::size_t crossings(const Vec3& y0, const Vec3& y1, std::span<double> out) const override;
   std::array<Vec3, 2> box() const override { return {boxes_[0].low, boxes_[0].high}; }
   TriangleSurface outline() const override { return surface_; }
+  void describe(Fingerprint& f) const override { f.add(surface_); }
 
  private:
   // What of a triangle is nearest to a point.

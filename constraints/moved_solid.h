@@ -17,6 +17,7 @@ class MovedSolid final : public Solid {
   }
   std::array<Vec3, 2> box() const override { return box_; }
   TriangleSurface outline() const override;
+  void describe(Fingerprint& f) const override { f.add(base_, origin_, R_); }
 
  private:
   Vec3 to_base(const Vec3& z) const { return origin_ + R_ * z; }

@@ -110,6 +110,7 @@ class RigidBodyEffect final : public EffectSource {
  public:
   explicit RigidBodyEffect(RigidBodyDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
     if (auto r = check_obstacle(def_.shape); !r) return Error{who() + r.error()};

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "engine/base.h"
+#include "engine/fingerprint.h"
 #include "isochor/solids.h"
 
 namespace isochor {
@@ -27,6 +27,8 @@ class Solid {
   virtual std::array<Vec3, 2> box() const = 0;
   // The surface in triangles, for volumes, points that touch, and pictures.
   virtual TriangleSurface outline() const = 0;
+  // What it was made from.
+  virtual void describe(Fingerprint& f) const = 0;
 };
 
 // Passing through, as passes_through() of obstacle_shape.h has it; the thickness is that of the solid where

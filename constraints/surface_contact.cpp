@@ -156,6 +156,7 @@ class SurfaceContactEffect final : public EffectSource {
  public:
   explicit SurfaceContactEffect(SurfaceContactDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
     for (const auto& [key, value, unit] : {std::tuple{"thickness", def_.thickness, " m"},

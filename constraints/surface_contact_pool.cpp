@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "constraints/turning_frame.h"
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -241,6 +242,22 @@ FollowAnswer SurfaceContactPool::followed(const FollowRequest& q) const {
   if (!needed) target = base;
   if (target != center_) answer.pool = std::make_shared<SurfaceContactPool>(setup_, std::move(target));
   return answer;
+}
+
+Result<std::shared_ptr<const StencilPool>> SurfaceContactPool::restored(
+    std::span<const double> memory) const {
+  const auto per = static_cast<std::size_t>(memory_per_point());
+  std::vector<Index> kept(center_.size());
+  for (std::size_t s = 0; s < kept.size(); ++s) {
+    const double kept_number = memory[per * s];
+    if (!(kept_number >= 0 && kept_number <= setup_->skin->triangles()) ||
+        kept_number != std::floor(kept_number)) {
+      return Error{"contact \"" + setup_->name + "\" is said to be close to triangle number " +
+                   number(kept_number - 1) + " of " + std::to_string(setup_->skin->triangles())};
+    }
+    kept[s] = static_cast<Index>(kept_number) - 1;
+  }
+  return std::shared_ptr<const StencilPool>(std::make_shared<SurfaceContactPool>(setup_, std::move(kept)));
 }
 
 }  // namespace isochor

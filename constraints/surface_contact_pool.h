@@ -42,6 +42,7 @@ class SurfaceContactPool final : public StencilPool {
   void accept(const StencilRequest& request, std::span<double> memory) const override;
   bool follows() const override { return true; }
   FollowAnswer followed(const FollowRequest& request) const override;
+  Result<std::shared_ptr<const StencilPool>> restored(std::span<const double> memory) const override;
 
   const Setup& setup() const { return *setup_; }
   bool close(Index s) const { return center_[at(s)] >= 0; }

@@ -95,6 +95,7 @@ class WindingEffect final : public EffectSource {
  public:
   explicit WindingEffect(WindingDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
   Result<void> check() const override {
     for (const auto& path : def_.paths) {
       if (path.size() < 2) return Error{who() + ": a path has fewer than two points; give at least two"};
@@ -135,6 +136,7 @@ class StrainLimitEffect final : public EffectSource {
  public:
   explicit StrainLimitEffect(StrainLimitDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
   Result<void> check() const override {
     if (def_.surfaces.empty())
       return Error{who() + ": no surface named; name the faces that the layer covers"};

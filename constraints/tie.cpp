@@ -40,6 +40,7 @@ class TieEffect final : public EffectSource {
  public:
   explicit TieEffect(TieDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
     if (!(def_.stiffness >= 0) || !std::isfinite(def_.stiffness)) {

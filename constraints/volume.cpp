@@ -35,6 +35,7 @@ class VolumeEffect final : public EffectSource {
  public:
   explicit VolumeEffect(VolumeDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
     if (!std::isfinite(def_.stabilization) || def_.stabilization < 0) {

@@ -34,6 +34,13 @@ void Amount::save(std::vector<double>& out) const {
              {held_ ? 1.0 : 0.0, from_, to_, t0_, t1_, pending_ ? 1.0 : 0.0, pending_.value_or(0)});
 }
 
+bool Amount::take(std::span<const double>& in) {
+  const auto is_flag = [](double v) { return v == 0 || v == 1; };
+  if (in.size() < 7 || !is_flag(in[0]) || !is_flag(in[5])) return false;
+  in = in.subspan(7);
+  return true;
+}
+
 bool Amount::load(std::span<const double>& in) {
   if (in.size() < 7) return false;
   held_ = in[0] != 0;

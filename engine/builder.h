@@ -27,8 +27,12 @@ class Amount {
   void set(double value) { pending_ = value; }
   // Announces the increment [t0, t1]; a pending value ramps over it.
   void begin(double t0, double t1);
+  // Whether a host has set it.
+  bool set_by_host() const { return held_ || pending_; }
   void save(std::vector<double>& out) const;
   bool load(std::span<const double>& in);
+  // Takes the numbers of one amount off a list; false where they are none.
+  static bool take(std::span<const double>& in);
 
  private:
   Curve curve_;
@@ -78,6 +82,8 @@ class EffectSource {
  public:
   virtual ~EffectSource() = default;
   virtual const std::string& name() const = 0;
+  // Everything that its definition says: a saved state belongs to one definition.
+  virtual void describe(Fingerprint& f) const = 0;
   // Parameters alone, before the scene is known.
   virtual Result<void> check() const { return {}; }
   // First pass: what it needs from bodies.

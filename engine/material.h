@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 
+#include "engine/fingerprint.h"
 #include "engine/spectrum.h"
 
 namespace isochor {
@@ -27,6 +28,8 @@ class Material {
  public:
   virtual ~Material() = default;
   virtual std::string_view name() const = 0;
+  // Every constant of the law, and of each element where they vary.
+  virtual void describe(Fingerprint& f) const = 0;
   // Exact derivatives up to `want`, all lanes. psi is +infinity where the energy has no value.
   virtual void evaluate(Want want, const PointBatch& points, ResponseBatch& response) const = 0;
 

@@ -129,6 +129,12 @@ class StencilPool {
     (void)request;
     return {};
   }
+  // The pool with the stencils that its memory tells of, as accept() left it there. Refused where the memory
+  // is none of this pool.
+  virtual Result<std::shared_ptr<const StencilPool>> restored(std::span<const double> memory) const {
+    (void)memory;
+    return Error{std::string(name()) + " has no stencils to restore"};
+  }
 
   // Offsets of each stencil's packed Hessian blocks, in blocks; filled by finish_topology().
   std::span<const std::int64_t> hessian_offset() const { return hessian_offset_; }

@@ -1,4 +1,4 @@
-// What survives a step, and nothing else: copying it is a checkpoint.
+// What survives a step. A checkpoint holds the amounts that a host has set and the reactions besides.
 #pragma once
 
 #include "engine/base.h"
@@ -11,7 +11,6 @@ struct State {
   std::vector<Vec3> v;         // velocities [m/s]
   std::vector<double> lambda;  // multipliers of compliant rows, energy per unit of the row
   std::vector<double> extra;   // what schemes and effects keep between steps
-  std::uint64_t layout = 0;    // equals System::layout of the system it belongs to
 
   std::uint64_t hash() const {
     Hash h;

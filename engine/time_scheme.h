@@ -1,6 +1,7 @@
 // How positions relate to inertia. The unknown is x; time is an affine map around it.
 #pragma once
 
+#include "engine/fingerprint.h"
 #include "engine/state.h"
 
 namespace isochor {
@@ -9,6 +10,8 @@ class TimeScheme {
  public:
   virtual ~TimeScheme() = default;
   virtual std::string_view name() const = 0;
+  // Its name and parameters: what it keeps between steps is of use to no other.
+  virtual void describe(Fingerprint& f) const { f.add(name()); }
   virtual bool has_inertia() const { return true; }
   // Whether World::follow() may trace paths of equilibria; memory() is then 3 numbers a node and one.
   virtual bool follows_paths() const { return false; }

@@ -9,6 +9,7 @@
 #include "engine/builder.h"
 #include "engine/newton.h"
 #include "engine/recovery.h"
+#include "engine/text.h"
 #include "engine/time_scheme.h"
 #include "engine/world_impl.h"
 
@@ -31,6 +32,17 @@ Result<World> World::create(WorldOptions options, std::uint64_t abi) {
         "(generalized_alpha takes a spectral radius from 0 to 1)"};
   if (!(options.force_tolerance > 0) || !(options.row_tolerance > 0)) {
     return Error{"world: tolerances must be positive; the defaults are 1e-9 and 1e-10"};
+  }
+  if (!std::isfinite(options.force_tolerance) || !std::isfinite(options.row_tolerance)) {
+    return Error{"world: tolerances must be finite; the defaults are 1e-9 and 1e-10"};
+  }
+  if (!(options.smallest_fraction > 0 && options.smallest_fraction <= 1)) {
+    return Error{"world: smallest_fraction = " + number(options.smallest_fraction) +
+                 "; it must be positive and at most 1"};
+  }
+  if (!(options.time_error >= 0) || !std::isfinite(options.time_error)) {
+    return Error{"world: time_error = " + number(options.time_error) +
+                 "; it must be zero (no control) or positive"};
   }
   if (options.sweeps < 1 || options.sweeps > 100000) {
     return Error{"world: sweeps = " + std::to_string(options.sweeps) + "; give 1 to 100000"};
@@ -134,7 +146,6 @@ void World::Impl::tell_idle_rows() {
 void World::Impl::allocate() {
   const std::size_t n = at(system->nodes());
   const auto& parts = system->parts();
-  state.layout = system->layout();
   state.x = parts.rest;
   state.v.assign(n, Vec3{});
   state.lambda.assign(at(system->rows()), 0.0);
@@ -157,6 +168,7 @@ void World::Impl::allocate() {
   if (controls_error()) state_before = state;
   if (options.scheme->has_inertia()) ahead = state;
   memory_before.resize(at(system->memory()));
+  if (system->has_followers()) first_stencils = parts.stencil_pools;
   for (Index p = 0; p < static_cast<Index>(parts.row_pools.size()); ++p) {
     const RowPool& pool = *parts.row_pools[at(p)];
     if (pool.memory() == 0) continue;
@@ -563,6 +575,13 @@ void World::Impl::load_amounts(std::span<const double> all) {
   for (const auto& instance : instances) {
     if (Amount* a = instance->amount()) a->load(all);
   }
+}
+
+bool World::Impl::amounts_fit(std::span<const double> all) const {
+  for (const auto& instance : instances) {
+    if (instance->amount() && !Amount::take(all)) return false;
+  }
+  return all.empty();
 }
 
 void World::Impl::begin_amounts(double t0, double t1) {

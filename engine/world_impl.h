@@ -13,6 +13,12 @@
 
 namespace isochor {
 
+// A part of what a scene says, in words, and its fingerprint.
+struct ScenePart {
+  std::string what;
+  std::uint64_t fingerprint = 0;
+};
+
 struct World::Impl {
   // Largest angle by which anything that is prescribed turns from t0 to t1 [rad].
   double largest_turn(double t0, double t1) const;
@@ -86,6 +92,12 @@ struct World::Impl {
   void allocate();
   void save_amounts(std::vector<double>& all) const;
   void load_amounts(std::span<const double> all);
+  bool amounts_fit(std::span<const double> all) const;
+  // checkpoint.cpp
+  std::vector<ScenePart> described;  // made when first asked for
+  const std::vector<ScenePart>& scene_parts();
+  std::vector<std::shared_ptr<const StencilPool>> first_stencils;  // of a scene whose stencils follow
+  Result<void> restore_stencils(std::span<const double> memory);
   void begin_amounts(double t0, double t1);
   void evaluate_data(double t);
   // state.extra: what row pools keep, what the time scheme keeps, what the control of errors keeps.

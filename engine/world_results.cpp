@@ -1,7 +1,6 @@
 // What a host reads from a world.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "engine/recovery.h"
 #include "engine/surface_fields.h"
@@ -199,92 +198,6 @@ WorldSize World::size() const {
   s.factor_nonzeros = w.newton->factor_nonzeros();
   s.engine_bytes = w.newton->assembly().memory_bytes();
   return s;
-}
-
-std::uint64_t World::state_hash() const {
-  return impl_->state.hash();
-}
-
-namespace {
-
-constexpr std::uint64_t kSaveMagic = 0x31726f68636f7369ull;  // "isochor1"
-
-template <class T>
-void put(std::vector<std::byte>& out, const T* data, std::size_t count) {
-  const auto* p = reinterpret_cast<const std::byte*>(data);
-  out.insert(out.end(), p, p + count * sizeof(T));
-}
-
-template <class T>
-bool take(std::span<const std::byte>& in, T* data, std::size_t count) {
-  if (in.size() < count * sizeof(T)) return false;
-  if (count > 0) std::memcpy(data, in.data(), count * sizeof(T));  // of nothing there is no address
-  in = in.subspan(count * sizeof(T));
-  return true;
-}
-
-}  // namespace
-
-std::vector<std::byte> World::save() const {
-  std::vector<std::byte> out;
-  Impl& w = *impl_;
-  if (!w.compile()) return out;
-  std::vector<double> amounts;
-  w.save_amounts(amounts);
-  const std::uint64_t sizes[5] = {w.state.x.size(), w.state.lambda.size(), w.state.extra.size(),
-                                  amounts.size(), w.reactions.size()};
-  put(out, &kSaveMagic, 1);
-  put(out, &w.state.layout, 1);
-  put(out, sizes, 5);
-  put(out, &w.state.t, 1);
-  put(out, w.state.x.data(), w.state.x.size());
-  put(out, w.state.v.data(), w.state.v.size());
-  put(out, w.state.lambda.data(), w.state.lambda.size());
-  put(out, w.state.extra.data(), w.state.extra.size());
-  put(out, amounts.data(), amounts.size());
-  put(out, w.reactions.data(), w.reactions.size());
-  return out;
-}
-
-Result<void> World::load(std::span<const std::byte> bytes) {
-  Impl& w = *impl_;
-  if (auto r = w.compile(); !r) return r;
-  std::uint64_t magic = 0, layout = 0, sizes[5] = {};
-  if (!take(bytes, &magic, 1) || magic != kSaveMagic) {
-    return Error{"load: these bytes are no saved state of a world (wrong first eight bytes)"};
-  }
-  if (!take(bytes, &layout, 1) || layout != w.state.layout) {
-    return Error{
-        "load: the state was saved from another scene or mesh; load it into a world built the same way"};
-  }
-  if (!take(bytes, sizes, 5) || sizes[0] != w.state.x.size() || sizes[1] != w.state.lambda.size() ||
-      sizes[3] > bytes.size() || sizes[2] != w.state.extra.size() || sizes[4] != w.reactions.size()) {
-    return Error{"load: the saved state is damaged (sizes do not fit this scene)"};
-  }
-  // Read everything before anything is replaced.
-  State next;
-  next.layout = layout;
-  next.x.resize(sizes[0]);
-  next.v.resize(sizes[0]);
-  next.lambda.resize(sizes[1]);
-  next.extra.resize(sizes[2]);
-  std::vector<double> amounts(sizes[3]);
-  std::vector<Vec3> reactions(sizes[4]);
-  if (!take(bytes, &next.t, 1) || !take(bytes, next.x.data(), sizes[0]) ||
-      !take(bytes, next.v.data(), sizes[0]) || !take(bytes, next.lambda.data(), sizes[1]) ||
-      !take(bytes, next.extra.data(), sizes[2]) || !take(bytes, amounts.data(), sizes[3]) ||
-      !take(bytes, reactions.data(), sizes[4]) || !bytes.empty()) {
-    return Error{"load: the saved state is truncated or too long"};
-  }
-  std::size_t with_amount = 0;
-  for (const auto& instance : w.instances) with_amount += instance->amount() ? 1 : 0;
-  if (amounts.size() != 7 * with_amount) return Error{"load: the saved state belongs to other effects"};
-  w.load_amounts(amounts);
-  w.state = std::move(next);
-  w.settled.reset();
-  w.reactions = std::move(reactions);
-  if (const auto around = w.look_around(w.state.x, false); !around.error.empty()) return Error{around.error};
-  return {};
 }
 
 }  // namespace isochor

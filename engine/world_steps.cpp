@@ -305,6 +305,8 @@ StepReport World::advance(double h) {
   const auto start = std::chrono::steady_clock::now();
   const StageSeconds before = w.newton->seconds();
   const double t0 = w.state.t, t_end = t0 + h;
+  w.amounts_before.clear();
+  w.save_amounts(w.amounts_before);
   w.begin_amounts(t0, t_end);
   StepReport report;
   w.led_away.clear();
@@ -403,6 +405,7 @@ StepReport World::advance(double h) {
   if (report.status == StepStatus::converged) w.state.t = t_end;
   if (report.substeps > 0) w.settled.reset();
   w.give_back_unfinished(report);
+  if (w.state.t == t0) w.load_amounts(w.amounts_before);  // nothing was advanced
   w.finish_report(report, before, seconds_since(start));
   return report;
 }

@@ -158,6 +158,7 @@ class GeneralizedAlpha final : public TimeScheme {
   GeneralizedAlpha(std::string_view name, double am, double af)
       : name_(name), am_(am), af_(af), gamma_(0.5 - am + af), beta_(0.25 * (1 - am + af) * (1 - am + af)) {}
   std::string_view name() const override { return name_; }
+  void describe(Fingerprint& f) const override { f.add(name_, am_, af_); }
   std::size_t memory(std::size_t nodes) const override { return 1 + 6 * nodes; }
   double begin(const State& state, std::span<const double> memory, double h,
                std::span<Vec3> predicted) const override {

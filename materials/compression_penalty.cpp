@@ -27,6 +27,7 @@ class PenalizedMaterial final : public Material {
   PenalizedMaterial(std::string_view name, std::shared_ptr<const Material> base, PenaltyEnergy penalty)
       : name_(name), base_(std::move(base)), penalty_(name, penalty) {}
   std::string_view name() const override { return name_; }
+  void describe(Fingerprint& f) const override { f.add(name_, base_, penalty_); }
 
   void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
     base_->evaluate(want, points, r);

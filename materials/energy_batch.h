@@ -24,6 +24,7 @@ class InvariantMaterial final : public Material {
  public:
   InvariantMaterial(std::string_view name, Energy energy) : name_(name), energy_(energy) {}
   std::string_view name() const override { return name_; }
+  void describe(Fingerprint& f) const override { f.add(name_, energy_); }
 
   void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
     double I[kLanes] = {}, J[kLanes], g[9][kLanes];

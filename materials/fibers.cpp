@@ -50,6 +50,7 @@ class FiberMaterial final : public Material {
   FiberMaterial(std::string_view name, std::shared_ptr<const Material> matrix, std::vector<Family> families)
       : name_(name), matrix_(std::move(matrix)), families_(std::move(families)) {}
   std::string_view name() const override { return name_; }
+  void describe(Fingerprint& f) const override { f.add(name_, matrix_, families_); }
 
   void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
     matrix_->evaluate(want, points, r);

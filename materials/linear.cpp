@@ -10,6 +10,7 @@ class LinearMaterial final : public Material {
  public:
   LinearMaterial(double mu, double lambda) : mu_(mu), lambda_(lambda) {}
   std::string_view name() const override { return "linear"; }
+  void describe(Fingerprint& f) const override { f.add(name(), mu_, lambda_); }
 
   void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
     for (int l = 0; l < kLanes; ++l) {

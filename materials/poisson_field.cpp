@@ -26,6 +26,7 @@ class MixedMaterial final : public Material {
   };
   explicit MixedMaterial(std::vector<Part> parts) : parts_(std::move(parts)) {}
   std::string_view name() const override { return parts_.front().energy->name(); }
+  void describe(Fingerprint& f) const override { f.add(parts_); }
 
   void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
     ResponseBatch one;

@@ -14,6 +14,7 @@ class ScaledMaterial final : public Material {
   ScaledMaterial(std::shared_ptr<const Material> base, std::vector<double> factor)
       : base_(std::move(base)), factor_(std::move(factor)) {}
   std::string_view name() const override { return base_->name(); }
+  void describe(Fingerprint& f) const override { f.add(base_, factor_); }
 
   void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
     base_->evaluate(want, points, r);

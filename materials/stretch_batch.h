@@ -46,6 +46,7 @@ class StretchMaterial final : public Material {
  public:
   StretchMaterial(std::string_view name, Energy energy) : name_(name), energy_(std::move(energy)) {}
   std::string_view name() const override { return name_; }
+  void describe(Fingerprint& f) const override { f.add(name_, energy_); }
 
   void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
     Lanes F[9];

@@ -130,6 +130,14 @@ Result<void> check_analysis(const AnalysisDef& a) {
     return Error{"analysis.step = " + number(*a.step) + " s asks for more than " +
                  std::to_string(kMostSteps) + " steps; take a longer one"};
   }
+  // Steps are of one length and end with the duration; to the digits that people type.
+  if (a.step && std::abs(std::round(a.duration / *a.step) * *a.step - a.duration) > 1e-5 * a.duration) {
+    const double fewer = std::max(1.0, std::floor(a.duration / *a.step));
+    return Error{"analysis.step = " + number(*a.step) + " s does not divide the duration, " +
+                 number(a.duration) + ": " + number(fewer) + " steps take " + number(a.duration / fewer) +
+                 " s each and " + number(fewer + 1) + " take " + number(a.duration / (fewer + 1)) +
+                 "; give one of these numbers as analysis.steps, or another duration"};
+  }
   if (!a.step && (a.steps < 1 || a.steps > kMostSteps)) {
     return Error{"analysis.steps = " + std::to_string(a.steps) + "; it must lie between 1 and " +
                  std::to_string(kMostSteps)};
@@ -214,6 +222,11 @@ Result<void> check_metrics(const SceneDef& s) {
     const MetricDef& m = s.metrics[i];
     const std::string where = place("metrics", i);
     if (auto r = check_metric(s, m, where); !r) return r;
+    if (m.tolerance && !(*m.tolerance >= 0 && std::isfinite(*m.tolerance))) {
+      return Error{where + ".tolerance = " + number(*m.tolerance) + "; it must be zero or positive"};
+    }
+    if (!std::isfinite(m.scale) || (m.reference && !std::isfinite(*m.reference)))
+      return Error{where + ": scale and reference must be finite numbers"};
     if (!m.time) continue;
     const double steps = *m.time / plan.h;
     if (steps < 0.5 || steps > plan.steps + 0.5 || std::abs(steps - std::round(steps)) > 1e-6) {
@@ -293,6 +306,14 @@ Result<void> check_scene(const SceneDef& s) {
   if (s.outputs.every < 0) {
     return Error{"outputs.every = " + std::to_string(s.outputs.every) +
                  "; give 0 (no frames) or a number of steps"};
+  }
+  if (s.outputs.checkpoint_steps < 0) {
+    return Error{"outputs.checkpoint_steps = " + std::to_string(s.outputs.checkpoint_steps) +
+                 "; give 0 (none) or a number of steps"};
+  }
+  if (!(s.outputs.checkpoint_seconds >= 0) || !std::isfinite(s.outputs.checkpoint_seconds)) {
+    return Error{"outputs.checkpoint_seconds = " + number(s.outputs.checkpoint_seconds) +
+                 " s; give 0 (none) or a positive number"};
   }
   return check_metrics(s);
 }

@@ -3,9 +3,11 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 
 #include "engine/mesh/atomic_file.h"
 #include "scenes/run_page.h"
+#include "scenes/scene_file.h"
 
 namespace isochor {
 
@@ -13,7 +15,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
+// An empty cell is what readers of tables take for a number that is missing; few of them know inf and nan.
 std::string number(double v) {
+  if (!std::isfinite(v)) return {};
   char text[40];
   std::snprintf(text, sizeof text, "%.12g", v);
   return text;
@@ -68,20 +72,55 @@ std::string table_row(const StepRecord& r) {
   return line + "\n";
 }
 
-// Frames of an earlier run beside new ones would be shown as one movie.
-void remove_old(const fs::path& folder, const SceneDef& scene) {
+constexpr const char* kCheckpoint = "checkpoint.state";
+constexpr const char* kPageJournal = "checkpoint.page";
+
+std::string frame_file(const std::string& series, int step) {
+  char suffix[24];
+  std::snprintf(suffix, sizeof suffix, "_%05d.vtu", step);
+  return series + suffix;
+}
+
+bool frame_due(const SceneDef& scene, int step) {
+  return scene.outputs.every > 0 && step % scene.outputs.every == 0;
+}
+
+// Files of a folder for which `of` holds, and what a killed run left of files that were to replace others.
+template <class Of>
+void remove_files(const fs::path& folder, Of of) {
   std::error_code code;
-  for (const char* file : {"summary.json", "steps.csv", "index.html"}) fs::remove(folder / file, code);
+  std::vector<fs::path> old;
+  for (const auto& entry : fs::directory_iterator(folder, code)) {
+    const std::string file = entry.path().filename().string();
+    if (of(file) || (file.ends_with(".tmp") && of(file.substr(0, file.rfind('.', file.size() - 5)))))
+      old.push_back(entry.path());
+  }
+  for (const auto& path : old) fs::remove(path, code);
+}
+
+// Frames of an earlier run beside new ones would be shown as one movie. Up to step `kept` they stay.
+void remove_frames(const fs::path& folder, const SceneDef& scene, int kept) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const std::string series = series_name(scene, b);
-    fs::remove(folder / (series + ".pvd"), code);
-    std::vector<fs::path> old;
-    for (const auto& entry : fs::directory_iterator(folder / "frames", code)) {
-      const std::string file = entry.path().filename().string();
-      if (file.starts_with(series + "_") && file.ends_with(".vtu")) old.push_back(entry.path());
+    std::set<std::string> stay;
+    for (int step = 0; step <= kept; ++step) {
+      if (frame_due(scene, step)) stay.insert(frame_file(series, step));
     }
-    for (const auto& path : old) fs::remove(path, code);
+    remove_files(folder / "frames", [&](const std::string& file) {
+      return file.starts_with(series + "_") && file.ends_with(".vtu") && !stay.contains(file);
+    });
   }
+}
+
+void remove_old(const fs::path& folder, const SceneDef& scene) {
+  remove_files(folder, [&](const std::string& file) {
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+      if (file == series_name(scene, b) + ".pvd") return true;
+    }
+    return file == "summary.json" || file == "steps.csv" || file == "index.html" || file == kCheckpoint ||
+           file == kPageJournal;
+  });
+  remove_frames(folder, scene, -1);
 }
 
 }  // namespace
@@ -93,7 +132,11 @@ Result<void> write_text(const std::string& path, const std::string& text) {
 }
 
 RunOutputs::RunOutputs(std::string folder, const SceneDef& scene)
-    : folder_(std::move(folder)), name_(scene.name), frames_(scene.bodies.size()) {}
+    : folder_(std::move(folder)),
+      name_(scene.name),
+      frames_(scene.bodies.size()),
+      keeps_(scene.outputs.checkpoint_steps > 0 || scene.outputs.checkpoint_seconds > 0),
+      journal_((fs::path(folder_) / kPageJournal).string()) {}
 RunOutputs::RunOutputs(RunOutputs&&) noexcept = default;
 RunOutputs& RunOutputs::operator=(RunOutputs&&) noexcept = default;
 RunOutputs::~RunOutputs() = default;
@@ -116,6 +159,50 @@ Result<RunOutputs> RunOutputs::open(const std::string& folder, const SceneDef& s
   fs::remove(frame_probe, code);
   remove_old(folder, scene);
   return RunOutputs(folder, scene);
+}
+
+Result<std::optional<RunCheckpoint>> RunOutputs::checkpoint_in(const std::string& folder) {
+  const fs::path path = fs::path(folder) / kCheckpoint;
+  std::error_code code;
+  if (!fs::exists(path, code)) return std::optional<RunCheckpoint>();
+  auto checkpoint = read_checkpoint(path.string());
+  if (!checkpoint) return Error{checkpoint.error()};
+  return std::optional(std::move(checkpoint).value());
+}
+
+Result<RunOutputs> RunOutputs::reopen(const std::string& folder, const RunView& view,
+                                      const RunCheckpoint& checkpoint) {
+  const SceneDef& scene = view.scene;
+  RunOutputs outputs(folder, scene);
+  remove_frames(folder, scene, checkpoint.step);
+  remove_files(folder, [&](const std::string& file) { return file == "index.html"; });
+  outputs.table_ = table_header(view.result);
+  for (const StepRecord& record : checkpoint.records) {
+    outputs.table_ += table_row(record);
+    ++outputs.rows_;
+    if (!frame_due(scene, record.step)) continue;
+    outputs.last_frame_ = record.step;
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+      const std::string file = "frames/" + frame_file(series_name(scene, b), record.step);
+      std::error_code code;
+      if (fs::exists(fs::path(folder) / file, code))
+        outputs.frames_[b].push_back({record.time, file});
+      else
+        view.result.warnings.push_back("the run is resumed without " + file + ", which is gone");
+    }
+  }
+  // Frames of a page go with frames in files.
+  if (outputs.last_frame_ >= 0 && scene.outputs.page) outputs.page_ = RunPage::start(view);
+  auto frames = outputs.journal_.restart(checkpoint.page_bytes);
+  if (!frames) return Error{frames.error()};
+  for (const PageFrame& frame : frames.value()) {
+    if (outputs.page_) outputs.page_->append(frame);
+  }
+  return outputs;
+}
+
+Result<void> RunOutputs::keep(const RunCheckpoint& checkpoint) {
+  return write_checkpoint((fs::path(folder_) / kCheckpoint).string(), checkpoint);
 }
 
 Result<void> RunOutputs::write_frame(const RunView& view, std::size_t b, const BodyFields& fields) {
@@ -150,25 +237,30 @@ Result<void> RunOutputs::write_frame(const RunView& view, std::size_t b, const B
                       {"max_stretch", 1, fields.cell_max_stretch},
                       {"region", 1, region}};
   const StepRecord& record = view.result.records.back();
-  char suffix[24];
-  std::snprintf(suffix, sizeof suffix, "_%05d.vtu", record.step);
   const std::string series = series_name(view.scene, b);
-  const std::string file = "frames/" + series + suffix;
+  const std::string file = "frames/" + frame_file(series, record.step);
   if (auto r = write_vtu((fs::path(folder_) / file).string(), grid); !r) return r;
   frames_[b].push_back({record.time, file});
   return write_pvd((fs::path(folder_) / (series + ".pvd")).string(), frames_[b]);
 }
 
 Result<void> RunOutputs::append_row(const RunView& view) {
+  // A step that led nowhere has no record of its own.
+  if (rows_ == view.result.records.size()) return {};
+  rows_ = view.result.records.size();
   if (table_.empty()) table_ = table_header(view.result);
   table_ += table_row(view.result.records.back());
   return write_text((fs::path(folder_) / "steps.csv").string(), table_);
 }
 
+Result<void> RunOutputs::write_summary(const RunView& view) {
+  return write_text((fs::path(folder_) / "summary.json").string(), summary_json(view.result));
+}
+
 Result<void> RunOutputs::record(const RunView& view, bool last) {
   const int step = view.result.records.back().step;
   const int every = view.scene.outputs.every;
-  const bool due = every > 0 && (step % every == 0 || last) && step != last_frame_;
+  const bool due = every > 0 && (frame_due(view.scene, step) || last) && step != last_frame_;
   if (due) {
     last_frame_ = step;
     if (!page_ && view.scene.outputs.page) page_ = RunPage::start(view);
@@ -177,20 +269,50 @@ Result<void> RunOutputs::record(const RunView& view, bool last) {
       fields.push_back(view.built.world.fields(view.built.bodies[b]));
       if (auto r = write_frame(view, b, fields.back()); !r) return r;
     }
-    if (page_) page_->append(view, fields);
+    if (page_) {
+      const PageFrame frame = page_->append(view, fields);
+      // One that is due to the end alone is none of a run that goes on.
+      if (keeps() && frame_due(view.scene, step)) {
+        if (auto r = journal_.append(frame); !r) return r;
+      }
+    }
   }
   if (auto r = append_row(view); !r) return r;
-  return write_text((fs::path(folder_) / "summary.json").string(), summary_json(view.result));
+  return write_summary(view);
 }
 
 Result<void> RunOutputs::finish(const RunView& view) {
-  if (page_) {
-    // The page is a view of the run; without it the numbers still stand.
-    if (auto r = page_->write(view, (fs::path(folder_) / "index.html").string()); !r) {
-      view.result.warnings.push_back("no results page: " + r.error());
-    }
+  // The page is a view of the run; where it cannot show that, the numbers still stand.
+  if (page_ && !page_->failure().empty()) {
+    view.result.warnings.push_back("no results page: " + page_->failure());
+  } else if (page_) {
+    if (auto r = page_->write(view, (fs::path(folder_) / "index.html").string()); !r) return r;
   }
-  return write_text((fs::path(folder_) / "summary.json").string(), summary_json(view.result));
+  if (auto r = write_summary(view); !r) return r;
+  if (!keeps() || view.result.status != RunStatus::converged) return {};
+  RunCheckpoint end;
+  end.scene = to_json(view.scene);
+  end.step = view.result.records.back().step;
+  end.ended = true;
+  std::error_code code;
+  fs::remove(fs::path(folder_) / kPageJournal, code);
+  return keep(end);
+}
+
+void RunOutputs::tell_failure(const RunView& view) {
+  if (write_summary(view)) return;
+  // Where there is no room for another file, the one that is there has some.
+  const std::string path = (fs::path(folder_) / "summary.json").string();
+  std::error_code code;
+  const auto size = fs::file_size(path, code);
+  if (code) return;
+  std::string text = failure_json(view.result);
+  if (text.size() > size) return;
+  text.resize(size, '\n');
+  if (std::FILE* file = std::fopen(path.c_str(), "r+b")) {
+    std::fwrite(text.data(), 1, text.size(), file);
+    std::fclose(file);
+  }
 }
 
 }  // namespace isochor

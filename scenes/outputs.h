@@ -5,7 +5,7 @@
 #include <string>
 
 #include "isochor/mesh_io.h"
-#include "scenes/run.h"
+#include "scenes/run_checkpoint.h"
 
 namespace isochor {
 
@@ -26,20 +26,37 @@ class RunOutputs {
   RunOutputs& operator=(RunOutputs&&) noexcept;
   ~RunOutputs();
 
+  // The checkpoint of an earlier run in the folder; none where it left no checkpoint.
+  static Result<std::optional<RunCheckpoint>> checkpoint_in(const std::string& folder);
+  // What an earlier run left in the folder up to its checkpoint, whose records the view has; what it wrote
+  // behind that is removed.
+  static Result<RunOutputs> reopen(const std::string& folder, const RunView& view,
+                                   const RunCheckpoint& checkpoint);
+
   // After a step (or the rest state): frame, table and summary so far. `last` forces a frame.
   Result<void> record(const RunView& view, bool last);
+  Result<void> keep(const RunCheckpoint& checkpoint);
+  std::uint64_t page_bytes() const { return journal_.bytes(); }
+  // Checkpoints are done with where the run has converged.
   Result<void> finish(const RunView& view);
+  // Where outputs could not be written the summary must not go on saying that the run has not ended.
+  void tell_failure(const RunView& view);
 
  private:
   RunOutputs(std::string folder, const SceneDef& scene);
+  bool keeps() const { return keeps_; }
+  Result<void> write_summary(const RunView& view);
   Result<void> write_frame(const RunView& view, std::size_t body, const BodyFields& fields);
   Result<void> append_row(const RunView& view);
 
   std::string folder_, name_;
   std::vector<std::vector<PvdEntry>> frames_;  // by body
   std::string table_;
+  std::size_t rows_ = 0;  // records in the table
   int last_frame_ = -1;
+  bool keeps_ = false;  // checkpoints
   std::unique_ptr<RunPage> page_;
+  PageJournal journal_;
 };
 
 // Writes beside the target and renames.

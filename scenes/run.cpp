@@ -1,13 +1,17 @@
 #include "scenes/run.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <new>
 #include <thread>
 
 #include "engine/text.h"
 #include "scenes/outputs.h"
 #include "scenes/probes.h"
+#include "scenes/scene_file.h"
 
 namespace isochor {
 
@@ -38,9 +42,16 @@ class Run {
 
   void describe();
   void locate_probes();
+  // Takes over where an earlier run was.
+  Result<void> resume(const RunCheckpoint& checkpoint);
   void march(RunOutputs* outputs);
+  bool not_written(const std::string& why);  // false
 
  private:
+  bool keeps() const { return scene_.outputs.checkpoint_steps > 0 || scene_.outputs.checkpoint_seconds > 0; }
+  void remember(int step, const RunOutputs& outputs);
+  bool keep(RunOutputs* outputs);
+  bool keep_if_due(RunOutputs* outputs);
   void record(int step, const StepReport& report);
   // True when the step ended the run.
   bool stopped(const StepReport& report);
@@ -57,6 +68,10 @@ class Run {
   std::vector<MaterialPoint> probes_;
   int doubtful_steps_ = 0;  // that ended with a warning
   bool interrupted_ = false;
+  RunCheckpoint complete_;  // as the last complete step left the run, without its records
+  int kept_step_ = -1;      // of the last checkpoint written
+  Clock::time_point kept_at_ = Clock::now();
+  double wall_before_ = 0;  // of the runs that this one resumes [s]
 };
 
 void Run::warn(const std::string& text) {
@@ -151,8 +166,73 @@ void Run::record(int step, const StepReport& report) {
   result_.solves += report.iterations + report.corrections;
   result_.state_hash = world.state_hash();
   result_.size = world.size();  // the factor is known after the first step
-  result_.wall_s = seconds_since(start_);
+  result_.wall_s = wall_before_ + seconds_since(start_);
   add(result_.stages, report.seconds);
+}
+
+// A step that ends early is no place to go on from: what was never stopped did not end there.
+void Run::remember(int step, const RunOutputs& outputs) {
+  complete_.step = step;
+  complete_.page_bytes = outputs.page_bytes();
+  const std::vector<std::byte> state = built_.world.save();
+  complete_.state.assign(reinterpret_cast<const char*>(state.data()), state.size());
+  complete_.newton_iterations = result_.newton_iterations;
+  complete_.factorizations = result_.factorizations;
+  complete_.solves = result_.solves;
+  complete_.wall_s = result_.wall_s;
+  complete_.stages = result_.stages;
+  complete_.warnings = result_.warnings;
+}
+
+bool Run::keep(RunOutputs* outputs) {
+  if (complete_.step == kept_step_) return true;
+  if (complete_.scene.empty()) complete_.scene = to_json(scene_);
+  complete_.program = version() + ", " + build_description();
+  complete_.records = result_.records;
+  while (complete_.records.back().step > complete_.step) complete_.records.pop_back();
+  auto r = outputs->keep(complete_);
+  complete_.records.clear();
+  if (!r) return not_written(r.error());
+  kept_step_ = complete_.step;
+  kept_at_ = Clock::now();
+  return true;
+}
+
+bool Run::keep_if_due(RunOutputs* outputs) {
+  const OutputDef& o = scene_.outputs;
+  const bool by_steps = o.checkpoint_steps > 0 && complete_.step % o.checkpoint_steps == 0;
+  const bool by_time = o.checkpoint_seconds > 0 && seconds_since(kept_at_) >= o.checkpoint_seconds;
+  return (!by_steps && !by_time) || keep(outputs);
+}
+
+Result<void> Run::resume(const RunCheckpoint& c) {
+  if (auto r = built_.world.load(std::as_bytes(std::span(c.state))); !r) return r;
+  const std::string program = version() + ", " + build_description();
+  result_.resumed_at = c.step;
+  result_.records = c.records;
+  result_.newton_iterations = c.newton_iterations;
+  result_.factorizations = c.factorizations;
+  result_.solves = c.solves;
+  result_.stages = c.stages;
+  result_.state_hash = built_.world.state_hash();
+  for (const StepRecord& r : c.records) doubtful_steps_ += r.warning.empty() ? 0 : 1;
+  for (const std::string& text : c.warnings) {
+    const auto& known = result_.warnings;
+    if (std::find(known.begin(), known.end(), text) == known.end()) result_.warnings.push_back(text);
+  }
+  if (c.program != program) {
+    warn("the run was begun by isochor " + c.program + " and goes on with " + program +
+         ": not to the last bit as if it had not been stopped");
+  }
+  wall_before_ = result_.wall_s = c.wall_s;
+  kept_step_ = c.step;
+  return {};
+}
+
+bool Run::not_written(const std::string& why) {
+  result_.status = RunStatus::not_written;
+  result_.reason = "outputs cannot be written: " + why;
+  return false;
 }
 
 bool Run::stopped(const StepReport& report) {
@@ -182,10 +262,7 @@ bool Run::stopped(const StepReport& report) {
 bool Run::write(RunOutputs* outputs, bool last) {
   if (!outputs) return true;
   auto r = outputs->record({scene_, built_, result_}, last);
-  if (r) return true;
-  result_.status = RunStatus::failed;
-  result_.reason = "outputs cannot be written: " + r.error();
-  return false;
+  return r || not_written(r.error());
 }
 
 void Run::march(RunOutputs* outputs) {
@@ -196,9 +273,14 @@ void Run::march(RunOutputs* outputs) {
   // Until the last step the summary says what is true: the run is not finished.
   result_.status = RunStatus::interrupted;
   result_.reason = "the run has not ended yet";
-  record(0, {});
-  if (!write(outputs, false)) return;
-  for (int step = 1; step <= plan.steps; ++step) {
+  const bool keeping = outputs && keeps();
+  if (keeping && result_.resumed_at >= 0) remember(result_.resumed_at, *outputs);
+  if (result_.records.empty()) {
+    record(0, {});
+    if (!write(outputs, false)) return;
+    if (keeping) remember(0, *outputs);
+  }
+  for (int step = result_.records.back().step + 1; step <= plan.steps; ++step) {
     const double before = world.time();
     // A stop between steps must not wait for the next iteration.
     interrupted_ = options_.stop && options_.stop();
@@ -224,7 +306,12 @@ void Run::march(RunOutputs* outputs) {
       result_.reason.clear();
     }
     if (over || last) warn_of_ends();
-    if (!write(outputs, over || last) || over || last) return;
+    if (!write(outputs, over || last)) return;
+    if (keeping && over) keep(outputs);
+    if (over || last) return;
+    if (!keeping) continue;
+    remember(step, *outputs);
+    if (!keep_if_due(outputs)) return;
   }
 }
 
@@ -242,47 +329,131 @@ const char* to_string(RunStatus status) {
       return "interrupted";
     case RunStatus::bad_input:
       return "bad_input";
+    case RunStatus::not_written:
+      return "not_written";
+    case RunStatus::out_of_memory:
+      return "out_of_memory";
     case RunStatus::failed:
       break;
   }
   return "failed";
 }
 
-RunResult run_scene(const SceneDef& scene, const RunOptions& options) {
+namespace {
+
+// The folder's outputs, begun anew or as an earlier run left them. A reason in the result: there are none.
+std::optional<RunOutputs> open_outputs(const SceneDef& scene, const RunOptions& options, BuiltScene& built,
+                                       Run& run, const std::optional<RunCheckpoint>& checkpoint,
+                                       RunResult& result) {
+  if (checkpoint) {
+    if (auto r = run.resume(*checkpoint); !r) {
+      result.reason = options.folder + " cannot be resumed: " + r.error();
+      return {};
+    }
+  }
+  auto outputs = checkpoint ? RunOutputs::reopen(options.folder, {scene, built, result}, *checkpoint)
+                            : RunOutputs::open(options.folder, scene);
+  if (outputs) return std::move(outputs).value();
+  result.reason = outputs.error();
+  return {};
+}
+
+// What the run is to go on from; false with a reason in the result: it cannot.
+bool find_checkpoint(const SceneDef& scene, const RunOptions& options,
+                     std::optional<RunCheckpoint>& checkpoint, RunResult& result) {
+  if (options.folder.empty()) {
+    result.reason =
+        "a run without outputs has nothing to resume; name the folder of the one that was stopped";
+    return false;
+  }
+  auto found = RunOutputs::checkpoint_in(options.folder);
+  if (!found) {
+    result.reason = found.error();
+    return false;
+  }
+  checkpoint = std::move(found).value();
+  if (!checkpoint) {
+    if (options.log) options.log(options.folder + " holds no checkpoint: the run begins at the beginning");
+    return true;
+  }
+  const std::string difference = scene_difference(checkpoint->scene, scene);
+  if (difference.empty()) return true;
+  result.reason = options.folder + " cannot be resumed: it was run with another scene, " + difference +
+                  "; give the scene as it was, or run without --resume to begin anew";
+  return false;
+}
+
+}  // namespace
+
+namespace {
+
+void out_of_memory(const std::string& doing, RunResult& result) {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  result.status = RunStatus::out_of_memory;
+  result.reason = "memory ran out while " + doing + ", with " + std::to_string(used.ru_maxrss / 1024) +
+                  " MB in use at most; take a coarser mesh or analysis.solver = \"iterative\", or give the "
+                  "process more (ulimit -v, limits of the container)";
+}
+
+std::string solving(const RunResult& result) {
+  const int step = result.records.empty() ? 0 : result.records.back().step + 1;
+  return "solving step " + std::to_string(step) + " of " + std::to_string(result.steps_asked) + " for " +
+         std::to_string(result.size.displacement_unknowns) + " displacements and " +
+         std::to_string(result.size.multipliers) + " multipliers";
+}
+
+void run_into(const SceneDef& scene, const RunOptions& options, RunResult& result) {
   const auto start = Clock::now();
-  RunResult result;
   result.scene = scene.name;
   const auto hardware = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   result.threads = options.threads > 0 ? options.threads : hardware;
   if (options.budget && !(*options.budget > 0)) {
-    result.reason = "budget = " + std::to_string(*options.budget) + " s; it must be positive";
-    return result;
+    result.reason = "budget = " + number(*options.budget) + " s; it must be positive";
+    return;
+  }
+  std::optional<RunCheckpoint> checkpoint;
+  if (options.resume && !find_checkpoint(scene, options, checkpoint, result)) return;
+  if (checkpoint && checkpoint->ended) {
+    result.status = RunStatus::converged;
+    result.ended_before = true;
+    return;
   }
   auto built = build(scene, {options.threads});
   if (!built) {
     result.reason = built.error();
-    return result;
-  }
-  std::optional<RunOutputs> outputs;
-  if (!options.folder.empty()) {
-    auto opened = RunOutputs::open(options.folder, scene);
-    if (!opened) {
-      result.reason = opened.error();
-      return result;
-    }
-    outputs.emplace(std::move(opened).value());
+    return;
   }
   Run run(scene, options, built.value(), result, start);
   run.describe();
   run.locate_probes();
-  run.march(outputs ? &*outputs : nullptr);
+  std::optional<RunOutputs> outputs;
+  if (!options.folder.empty()) {
+    outputs = open_outputs(scene, options, built.value(), run, checkpoint, result);
+    if (!outputs) return;
+  }
+  try {
+    run.march(outputs ? &*outputs : nullptr);
+  } catch (const std::bad_alloc&) {
+    out_of_memory(solving(result), result);
+  }
   result.metrics = evaluate_metrics(scene, result.records);
-  result.wall_s = seconds_since(start);
-  if (outputs && result.status != RunStatus::failed) {
-    if (auto r = outputs->finish({scene, built.value(), result}); !r) {
-      result.status = RunStatus::failed;
-      result.reason = "outputs cannot be written: " + r.error();
-    }
+  const RunView view{scene, built.value(), result};
+  if (outputs && result.status != RunStatus::not_written) {
+    if (auto r = outputs->finish(view); !r) run.not_written(r.error());
+  }
+  if (outputs && result.status == RunStatus::not_written) outputs->tell_failure(view);
+}
+
+}  // namespace
+
+RunResult run_scene(const SceneDef& scene, const RunOptions& options) {
+  RunResult result;
+  try {
+    run_into(scene, options, result);
+  } catch (const std::bad_alloc&) {
+    if (result.status != RunStatus::out_of_memory)
+      out_of_memory("reading meshes and building the world", result);
   }
   return result;
 }

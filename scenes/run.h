@@ -43,8 +43,10 @@ enum class RunStatus : std::uint8_t {
   not_converged,  // up to the last record
   budget,         // stopped by the time allowed
   interrupted,
-  bad_input,  // nothing was solved
-  failed,     // outputs could not be written, or a fault of ours
+  bad_input,    // nothing was solved
+  not_written,  // outputs could not be written: a full disk
+  out_of_memory,
+  failed,  // a fault of ours
 };
 const char* to_string(RunStatus status);
 
@@ -59,8 +61,11 @@ struct MetricValue {
 struct RunOptions {
   std::string folder;            // where outputs go; empty: none are written
   int threads = 0;               // 0: all the machine has
-  std::optional<double> budget;  // [s] of wall time
-  std::function<bool()> stop;    // asked at every iteration; true interrupts
+  std::optional<double> budget;  // [s] of wall time, of this run alone where it resumes another
+  // Goes on from the last checkpoint in `folder` with the bits of a run that was never stopped; from the
+  // beginning where there is none. Refused where the scene is another.
+  bool resume = false;
+  std::function<bool()> stop;  // asked at every iteration; true interrupts
   std::function<void(const StepRecord&, int steps)> on_step;
   std::function<void(const std::string&)> log;  // warnings
 };
@@ -69,6 +74,8 @@ struct RunResult {
   RunStatus status = RunStatus::bad_input;
   std::string reason;  // empty when converged; else one sentence
   std::string scene;
+  int resumed_at = -1;        // step of the checkpoint that the run went on from; -1: none
+  bool ended_before = false;  // nothing was left to resume: the run had converged
   int steps_asked = 0;
   std::vector<StepRecord> records;
   int newton_iterations = 0, factorizations = 0;
@@ -90,6 +97,8 @@ std::vector<MetricValue> evaluate_metrics(const SceneDef& scene, const std::vect
 
 // The text of summary.json.
 std::string summary_json(const RunResult& result);
+// As much of it as tells why there is no more.
+std::string failure_json(const RunResult& result);
 
 std::string version();
 std::string build_description();    // build type and compiler

@@ -207,7 +207,7 @@ std::unique_ptr<RunPage> RunPage::start(const RunView& view) {
       new RunPage(std::move(recorder).value(), std::move(vertices), std::move(overlays)));
 }
 
-void RunPage::append(const RunView& view, const std::vector<BodyFields>& fields) {
+PageFrame RunPage::append(const RunView& view, const std::vector<BodyFields>& fields) {
   PageFrame frame;
   frame.time = view.result.records.back().time;
   const bool contact = has_contact(view.scene);
@@ -248,11 +248,15 @@ void RunPage::append(const RunView& view, const std::vector<BodyFields>& fields)
   for (std::size_t p = 0; p < displacement.size(); ++p) {
     frame.probes.push_back(view.scene.probes[p].point + displacement[p]);
   }
+  append(frame);
+  return frame;
+}
+
+void RunPage::append(const PageFrame& frame) {
   if (auto r = recorder_.append(frame); !r) failure_ = r.error();
 }
 
 Result<void> RunPage::write(const RunView& view, const std::string& path) {
-  if (!failure_.empty()) return Error{failure_};
   return recorder_.write(path, report(view));
 }
 

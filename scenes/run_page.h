@@ -19,8 +19,13 @@ class RunPage {
  public:
   // Null when this build has no results page.
   static std::unique_ptr<RunPage> start(const RunView& view);
-  void append(const RunView& view, const std::vector<BodyFields>& fields);
+  // The frame, for whoever keeps it.
+  PageFrame append(const RunView& view, const std::vector<BodyFields>& fields);
+  // One that was kept.
+  void append(const PageFrame& frame);
   Result<void> write(const RunView& view, const std::string& path);
+  // Why frames cannot be shown; empty: they can.
+  const std::string& failure() const { return failure_; }
 
  private:
   // The node of each vertex; for the surface in a lattice its points instead.

@@ -135,6 +135,10 @@ struct ProbeDef {
 struct OutputDef {
   int every = 1;     // a .vtu every so many steps and at the end; 0: none
   bool page = true;  // the HTML results page
+  // A run that is killed goes on from its last checkpoint (RunOptions::resume): one every so many steps, and
+  // one where so much wall time has passed since the last; 0: none for that reason.
+  int checkpoint_steps = 0;
+  double checkpoint_seconds = 60;  // [s]
 };
 
 enum class Quantity : std::uint8_t {

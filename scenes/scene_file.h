@@ -21,6 +21,10 @@ Result<SceneDef> override_scene(const SceneDef& scene, const Overrides& override
 // The scene as the text of a scene file. Mesh paths stay as they are.
 std::string to_json(const SceneDef& scene);
 
+// What of a scene, kept as to_json() gave it, is another in this one: "analysis.steps was 10 and is 20".
+// Titles, and when checkpoints are made, do not count. Empty: nothing.
+std::string scene_difference(const std::string& kept, const SceneDef& scene);
+
 // Every key that the parser knows, with its kind: "bodies[].materials[].young: number". For the schema's
 // test.
 std::vector<std::string> scene_file_keys();

@@ -23,6 +23,7 @@ class ElementGuard final : public Material {
   // One barrier an element.
   explicit ElementGuard(std::vector<Barrier> barriers);
   std::string_view name() const override { return "element_guard"; }
+  void describe(Fingerprint& f) const override { f.add(name(), barriers_); }
   double looks_back_below() const override { return largest_threshold_; }
   void evaluate(Want want, const PointBatch& points, ResponseBatch& response) const override;
   void spectrum(const PointBatch& points, const Svd3& svd, Spectrum& out) const override;

@@ -413,6 +413,8 @@ template <class Io>
 void describe(Io& io, OutputDef& o) {
   io.integer("every", o.every, 1);
   io.flag("page", o.page, true);
+  io.integer("checkpoint_steps", o.checkpoint_steps, 0);
+  io.number("checkpoint_seconds", o.checkpoint_seconds, 60);
 }
 
 template <class Io>

@@ -178,4 +178,50 @@ std::string to_json(const SceneDef& scene) {
   return pretty(json_of(scene), 0) + "\n";
 }
 
+namespace {
+
+// "/bodies/0/mesh" as "bodies[0].mesh".
+std::string dotted(const std::string& pointer) {
+  std::string text;
+  std::size_t at = 1;
+  while (at <= pointer.size()) {
+    const std::size_t end = std::min(pointer.find('/', at), pointer.size());
+    const std::string key = pointer.substr(at, end - at);
+    const bool number = !key.empty() && key.find_first_not_of("0123456789") == std::string::npos;
+    text += number ? "[" + key + "]" : (text.empty() ? "" : ".") + key;
+    at = end + 1;
+  }
+  return text;
+}
+
+std::string shortened(const Json& json) {
+  const std::string text = inline_text(json);
+  return text.size() > 60 ? text.substr(0, 57) + "..." : text;
+}
+
+}  // namespace
+
+std::string scene_difference(const std::string& kept, const SceneDef& scene) {
+  const Json before = Json::parse(kept, nullptr, false);
+  if (before.is_discarded()) return "the scene that is kept cannot be read";
+  const Json now = json_of(scene);
+  for (const Json& change : Json::diff(before, now)) {
+    const std::string path = change.value("path", ""), op = change.value("op", "");
+    if (path == "/title" || path == "/description" || path.starts_with("/outputs/checkpoint_")) continue;
+    // All of an object that holds checkpoints alone.
+    if (path == "/outputs") {
+      Json all = op == "remove" ? before["outputs"] : change["value"];
+      all.erase("checkpoint_steps");
+      all.erase("checkpoint_seconds");
+      if (all.empty()) continue;
+    }
+    const std::string where = dotted(path);
+    if (op == "remove") return where + " was " + shortened(before[Json::json_pointer(path)]) + " and is left out";
+    if (op == "add") return where + " was left out and is " + shortened(change["value"]);
+    return where + " was " + shortened(before[Json::json_pointer(path)]) + " and is " +
+           shortened(change["value"]);
+  }
+  return {};
+}
+
 }  // namespace isochor

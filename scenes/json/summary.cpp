@@ -98,6 +98,10 @@ std::string summary_json(const RunResult& r) {
   return dump(summary(r));
 }
 
+std::string failure_json(const RunResult& r) {
+  return dump({{"status", to_string(r.status)}, {"reason", r.reason}, {"scene", r.scene}});
+}
+
 std::string summary_json(const RunResult& r, const Accuracy& accuracy) {
   Json j = summary(r);
   Json& a = j["accuracy"];

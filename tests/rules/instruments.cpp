@@ -94,6 +94,7 @@ class EmptyRows final : public RowPool {
 class EmptyEffect final : public EffectSource {
  public:
   const std::string& name() const override { return name_; }
+  void describe(Fingerprint& f) const override { f.add(name_); }
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     auto rows = std::make_shared<EmptyRows>();
     rows->stencil_pool = builder.add_stencils(std::make_shared<EmptyPool>());

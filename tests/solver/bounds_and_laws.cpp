@@ -68,6 +68,7 @@ class HeightEffect final : public EffectSource {
   HeightEffect(Kind kind, BodyId body, std::vector<std::string> surfaces, double height, double compliance)
       : kind_(kind), body_(body), surfaces_(std::move(surfaces)), height_(height), compliance_(compliance) {}
   const std::string& name() const override { return name_; }
+  void describe(Fingerprint& f) const override { f.add(kind_, body_, surfaces_, height_, compliance_); }
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     Selection where;
     where.body = body_;
