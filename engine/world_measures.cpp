@@ -86,19 +86,23 @@ double work_on(std::span<const Vec3> force, std::span<const Vec3> x, std::span<c
 }  // namespace
 
 // Energy of the rows with a law of their own, the gas in chambers: multiplier times strain less the law's
-// potential.
-double World::Impl::law_energy() const {
+// potential. The strain is that of the positions: the multipliers of some schemes belong to other times, and
+// an error of theirs counts by its square then. At the state, evaluated.
+double World::Impl::law_energy() {
+  if (system->laws().empty()) return 0;
+  std::vector<double> phi(at(system->rows()));
+  newton->assembly().row_values(phi);
   double energy = 0;
   for (const auto& law : system->laws()) {
     const RowPool& pool = *system->parts().row_pools[at(law.row_pool)];
+    const auto first = at(system->first_row(law.row_pool)), rows = at(pool.rows());
     const auto memory =
         std::span<const double>(state.extra)
             .subspan(at(system->first_memory(law.row_pool)), static_cast<std::size_t>(pool.memory()));
-    const auto lambda =
-        std::span<const double>(state.lambda).subspan(at(system->first_row(law.row_pool)), at(pool.rows()));
-    std::vector<double> strain(lambda.size());
-    energy -= pool.evaluate_law({state.t, state.t, memory}, lambda, strain, {});
-    for (std::size_t r = 0; r < lambda.size(); ++r) energy += lambda[r] * strain[r];
+    std::vector<double> strain(rows);
+    energy -= pool.evaluate_law({state.t, state.t, memory},
+                                std::span<const double>(state.lambda).subspan(first, rows), strain, {});
+    for (std::size_t r = first; r < first + rows; ++r) energy += state.lambda[r] * (phi[r] - target[r]);
   }
   return energy;
 }
@@ -118,8 +122,8 @@ Energies World::energies() const {
     assembly.prescribed_row_values(phi);
     for (std::size_t r = 0; r < phi.size(); ++r) e.pressures += w.prescribed[r] * (phi[r] - rest_phi[r]);
   }
+  e.elastic = elastic_energy();  // evaluates the state
   e.pressures += w.law_energy();
-  e.elastic = elastic_energy();
   e.kinetic = kinetic_energy();
   std::vector<Vec3> force(w.state.x.size());
   for (const auto& load : parts.loads) load->add(w.state.t, force);

@@ -356,9 +356,7 @@ void RunPage::append(const RunView& view, const std::vector<BodyFields>& fields)
       if (contact) frame.fields[4].push_back(interpolated(p, touched));
     }
   }
-  // Upright planes first, and of those the ones that face the first camera.
-  const std::array<int, 3> order = up_axis(view.scene) == 'y' ? std::array{2, 0, 1} : std::array{1, 0, 2};
-  if (!to_cut_.empty()) section_ = section_through(frame.positions, to_cut_, order);
+  if (!to_cut_.empty()) section_ = section_through(frame.positions, to_cut_, up_axis(view.scene));
   overlays_.append(view, frame);
   const auto& displacement = view.result.records.back().probes;
   for (std::size_t p = 0; p < displacement.size(); ++p) {

@@ -92,11 +92,11 @@ std::vector<double> candidates(std::span<const Vec3> points, std::span<const Ind
 
 }  // namespace
 
-PageSection section_through(std::span<const Vec3> points, std::span<const Index> triangles,
-                            std::array<int, 3> order) {
+PageSection section_through(std::span<const Vec3> points, std::span<const Index> triangles, char up) {
   PageSection section;
   const std::vector<Index> piece = pieces(points.size(), triangles);
   double best = -1;
+  const std::array<int, 3> order = up == 'y' ? std::array{2, 0, 1} : std::array{1, 0, 2};
   for (const int axis : order) {
     double shown = -1;
     for (const double place : candidates(points, triangles, piece, axis)) {
@@ -105,7 +105,7 @@ PageSection section_through(std::span<const Vec3> points, std::span<const Index>
       shown = area;
       section.at[axis] = place;
     }
-    if (shown <= 1.02 * best) continue;
+    if (shown <= (axis == order.back() ? 1.5 : 1.02) * best) continue;
     best = shown;
     section.axis = axis;
   }

@@ -10,7 +10,6 @@
 #include "small_scene.h"
 
 using namespace isochor;
-using Catch::Approx;
 using Json = nlohmann::json;
 
 namespace {
@@ -97,8 +96,8 @@ TEST_CASE("a block that is turned and squeezed says by how much, in every output
   CHECK(row.contains("volume_row_residual"));
   CHECK_FALSE(row.contains("volume_error"));
   const Json j = Json::parse(test::slurp(scratch / "summary.json"));
-  CHECK(j["gauges"]["end"]["angle_deg"] == Approx(40));
-  CHECK(j["volumes"]["block"]["rest_volume_m3"] == Approx(2));
+  CHECK(j["gauges"]["end"]["angle_deg"].get<double>() == Approx(40));
+  CHECK(j["volumes"]["block"]["rest_volume_m3"].get<double>() == Approx(2));
   CHECK_FALSE(j.contains("volume_error"));
 }
 
@@ -134,21 +133,20 @@ TEST_CASE("energies of a run add up, and a fall keeps their sum") {
 }
 
 TEST_CASE("what is watched and is not there is refused with what there is") {
-  using Catch::Contains;
   CHECK_THAT(error_with(R"(orientations=[{"name": "a", "where": {"nearest": [[0, 0, 0]]}}])"),
-             Contains("orientations[0].where") && Contains("one line or in one point"));
+             ContainsSubstring("orientations[0].where") && ContainsSubstring("one line or in one point"));
   CHECK_THAT(error_with(R"(orientations=[{"name": "a", "where": {"surfaces": "lid"}}])"),
-             Contains("orientations[0].where") && Contains("\"lid\""));
+             ContainsSubstring("orientations[0].where") && ContainsSubstring("\"lid\""));
   CHECK_THAT(error_with(R"(orientations=[{"name": "wall", "where": {"surfaces": "x1"}}])"),
-             Contains("used already"));
+             ContainsSubstring("used already"));
   CHECK_THAT(error_with(R"(metrics=[{"name": "m", "quantity": "volume_change", "of": "block.lid"}])"),
-             Contains("metrics[0].of") && Contains("\"block\""));
+             ContainsSubstring("metrics[0].of") && ContainsSubstring("\"block\""));
   CHECK_THAT(error_with(R"(metrics=[{"name": "m", "quantity": "min_J", "of": "lid"}])"),
-             Contains("names no body"));
+             ContainsSubstring("names no body"));
   CHECK_THAT(error_with(R"(metrics=[{"name": "m", "quantity": "orientation_angle", "of": "tip"}])"),
-             Contains("names no orientation"));
+             ContainsSubstring("names no orientation"));
   CHECK_THAT(error_with(R"(metrics=[{"name": "m", "quantity": "total_energy", "of": "block"}])"),
-             Contains("whole scene"));
+             ContainsSubstring("whole scene"));
 }
 
 TEST_CASE("cuts go where most is seen, whatever the axes") {
@@ -165,7 +163,7 @@ TEST_CASE("cuts go where most is seen, whatever the axes") {
     add_box({0, 0, 0}, {10, 4, 1}, points, triangles);
     add_box({3, 1, 7}, {4, 2, 8}, points, triangles);
     for (Vec3& p : points) p = turned(p);
-    const PageSection s = section_through(points, triangles, {0, 1, 2});
+    const PageSection s = section_through(points, triangles, 'z');
     CHECK(s.axis == (2 + turn) % 3);
     CHECK(s.at[s.axis] == Approx(0.5).epsilon(1e-3));
   }
@@ -174,7 +172,13 @@ TEST_CASE("cuts go where most is seen, whatever the axes") {
   std::vector<Index> triangles;
   add_box({0, 0, 0}, {1, 1, 1}, points, triangles);
   add_box({5, 0, 0}, {6, 1, 1}, points, triangles);
-  const PageSection s = section_through(points, triangles, {0, 1, 2});
+  const PageSection s = section_through(points, triangles, 'z');
   CHECK(s.axis == 1);
   CHECK((s.at.x < 1 || s.at.x > 5));
+  // Seen from above it would show a little more; upright planes show how a body stands.
+  points.clear();
+  triangles.clear();
+  add_box({0, 0, 0}, {2, 2, 1.5}, points, triangles);
+  CHECK(section_through(points, triangles, 'z').axis == 1);
+  CHECK(section_through(points, triangles, 'y').axis == 2);
 }

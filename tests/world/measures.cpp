@@ -9,7 +9,6 @@
 
 using namespace isochor;
 using namespace test;
-using Catch::Approx;
 
 namespace {
 
@@ -76,7 +75,7 @@ TEST_CASE("volumes of bodies and regions follow a stretch that differs between r
   for (const Element e : kAllElements) {
     INFO(name_of(e));
     Random random(7 + static_cast<unsigned>(e));
-    World world = make_world(static_options());
+    World world = make_world(dynamic_options());
     const BodyId body = add_body(world, block_for(e), e, neo_hookean(1e5, 0.3), 1000, "slab");
     const double low = random.in(0.6, 1.4), high = random.in(0.6, 1.4), y = random.in(0.7, 1.3);
     put(world, body, [&](const Vec3& X) {
@@ -134,7 +133,7 @@ TEST_CASE("momentum of a body that flies and spins is that of the rigid body") {
     must(world.compile());
     const Vec3 middle = 0.5 * kSize, v = random.vector(3), w = random.vector(2);
     must(world.set_velocities(body,
-                               moved(world, body, [&](const Vec3& X) { return v + cross(w, X - middle); })));
+                              moved(world, body, [&](const Vec3& X) { return v + cross(w, X - middle); })));
     const double mass = density * kSize.x * kSize.y * kSize.z;
     const auto square = [](double a) { return a * a; };
     const Vec3 spin{mass / 12 * (square(kSize.y) + square(kSize.z)) * w.x,
@@ -162,13 +161,18 @@ TEST_CASE("what a falling body loses in height it has in speed") {
     World world = make_world(options);
     const BodyId body = add_body(world, block_for(Element::tet4), Element::tet4, neo_hookean(1e5, 0.3), 700);
     const double mass = 700 * kSize.x * kSize.y * kSize.z;
+    double start = 0;
     for (int k = 1; k <= 8; ++k) {
       must_advance(world, 0.05);
       const double t = 0.05 * k, fallen = 0.5 * mass * dot(options.gravity, options.gravity) * t * t;
       const Energies e = world.energies();
-      CHECK(e.gravity == Approx(-fallen).epsilon(1e-8));
+      // Newmark's rule begins with a step of its own, that falls too far.
+      if (k == 1) start = e.total();
+      CHECK(e.gravity ==
+            Approx(-mass * dot(options.gravity, world.measures(body).center_of_mass - 0.5 * kSize)));
+      CHECK(e.gravity == Approx(start - fallen).epsilon(1e-8));
       CHECK(e.kinetic == Approx(fallen).epsilon(1e-8));
-      CHECK(std::abs(e.total()) < 1e-7 * fallen);
+      CHECK(std::abs(e.total() - start) < 1e-7 * fallen);
       near(world.measures(body).linear_momentum, mass * t * options.gravity, 1e-7 * mass);
     }
   }
@@ -197,53 +201,72 @@ TEST_CASE("loads that do not follow have the potential of their force times its 
   CHECK(energies.potential() == Approx(energies.elastic + energies.loads));
 }
 
-TEST_CASE("a pressure that stays has the potential of the volume it opened, and the total stays") {
-  for (const CavityControl control : {CavityControl::pressure, CavityControl::gas}) {
-    INFO((control == CavityControl::gas ? "gas" : "pressure"));
-    World world = make_world(free_motion(implicit_midpoint()));
+namespace {
+
+// A hollow box of 3 cm with a chamber of 1 cm^3 that holds gas, or has the pressure of 1000 Pa.
+struct Chamber {
+  World world;
+  BodyId body;
+  double rest = 0;  // volume [m^3]
+  Chamber(CavityControl control, SchemePtr scheme) : world(make_world(free_motion(std::move(scheme)))) {
     const Mesh mesh = mapped(hollow_box(false, CellType::tet4), [](const Vec3& p) { return 0.01 * p; });
-    const BodyId body = add_body(world, mesh, Element::tet4_edge_smoothed, neo_hookean(1e5, 0.4));
+    body = add_body(world, mesh, Element::tet4_edge_smoothed, neo_hookean(1e5, 0.4));
     add_volume(world, body);
     hold(world, body, {"z0"});
     CavityDef def;
     def.body = body;
     def.surfaces = {"chamber"};
     def.control = control;
-    if (control == CavityControl::pressure) def.amount = Curve::constant(1000);
+    def.amount = Curve::constant(control == CavityControl::pressure ? 1000 : 1);
     value(world.add(cavity(def)));
     must(world.compile());
-    const double rest = gauge(world, "volume");
-    if (control == CavityControl::gas) {
-      // Let go from where the chamber is a little too large.
+    rest = gauge(world, "volume");
+    // Gas is let go from where the chamber is a little too large.
+    if (control == CavityControl::gas)
       put(world, body, [](const Vec3& X) { return Vec3{X.x, X.y, 1.01 * X.z}; });
-    }
-    double start = control == CavityControl::pressure ? 0 : std::nan(""), largest = 0, drift = 0;
-    for (int k = 0; k < 40; ++k) {
-      must_advance(world, 1e-4);
-      const Energies e = world.energies();
-      const double p = gauge(world, "pressure"), V = gauge(world, "volume");
-      if (control == CavityControl::pressure) {
-        CHECK(e.pressures == Approx(-1000 * (V - rest)).epsilon(1e-9).margin(1e-15));
-      } else {
-        // Isothermal: the pressure over that outside, integrated over the volume.
-        CHECK(e.pressures == Approx(def.ambient * (V - rest) - def.ambient * rest * std::log(V / rest))
-                                 .epsilon(1e-3)
-                                 .margin(1e-9));
-        CHECK((p < 0) == (V > rest));
-      }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("pressures have the potential of the volume they opened") {
+  Chamber given(CavityControl::pressure, implicit_midpoint()), gas(CavityControl::gas, implicit_euler());
+  for (int k = 0; k < 20; ++k) {
+    must_advance(given.world, 1e-4);
+    must_advance(gas.world, 1e-4);
+    const double V = gauge(gas.world, "volume"), ambient = CavityDef{}.ambient;
+    CHECK(given.world.energies().pressures ==
+          Approx(-1000 * (gauge(given.world, "volume") - given.rest)).epsilon(1e-9).margin(1e-15));
+    // Isothermal: the pressure beyond that outside, integrated over the volume.
+    CHECK(gas.world.energies().pressures ==
+          Approx(ambient * (V - gas.rest) - ambient * gas.rest * std::log(V / gas.rest))
+              .epsilon(1e-4)
+              .margin(1e-10));
+  }
+}
+
+TEST_CASE("a body on a pressure or on gas keeps its total energy while it swings") {
+  for (const CavityControl control : {CavityControl::pressure, CavityControl::gas}) {
+    INFO((control == CavityControl::gas ? "gas" : "pressure"));
+    Chamber c(control, implicit_midpoint());
+    double start = std::nan(""), largest = 0, swing = 0, drift = 0;
+    for (int k = 0; k < 60; ++k) {
+      must_advance(c.world, 5e-5);
+      const Energies e = c.world.energies();
       if (std::isnan(start)) start = e.total();
-      largest = std::max(largest, e.elastic + e.kinetic);
+      largest = std::max(largest, e.kinetic);
+      swing = std::max(swing, std::abs(e.pressures));
       drift = std::max(drift, std::abs(e.total() - start));
     }
-    CHECK(largest > 0);
-    CHECK(drift < 0.02 * largest);
+    CHECK(swing > 0.1 * largest);
+    CHECK(drift < 0.05 * largest);
   }
 }
 
 TEST_CASE("a face and a set of nodes have turned as the body has") {
   for (const Element e : kAllElements) {
     INFO(name_of(e));
-    World world = make_world(static_options());
+    World world = make_world(dynamic_options());
     Mesh mesh = block_for(e);
     // Faces may be listed in any order, seen from either side.
     Random random(50 + static_cast<unsigned>(e));
@@ -291,7 +314,7 @@ TEST_CASE("a face and a set of nodes have turned as the body has") {
 TEST_CASE("the end of an arm that is bent to an arc has turned by the angle of the arc") {
   for (const double angle : {0.3, 1.2, 2.8}) {
     INFO(angle);
-    World world = make_world(static_options());
+    World world = make_world(dynamic_options());
     const BodyId body = add_body(world, block({0, -0.1, -0.1}, {2, 0.1, 0.1}, {20, 2, 2}), Element::tet4,
                                  neo_hookean(1e5, 0.3));
     const double radius = 2 / angle;
@@ -312,7 +335,7 @@ TEST_CASE("the end of an arm that is bent to an arc has turned by the angle of t
 }
 
 TEST_CASE("what has no rotation is refused with its reason") {
-  World world = make_world(static_options());
+  World world = make_world(dynamic_options());
   const BodyId body = add_body(world, block_for(Element::tet4), Element::tet4, neo_hookean(1e5, 0.3));
   must(world.compile());
   Selection line, node, wrong;
@@ -322,15 +345,15 @@ TEST_CASE("what has no rotation is refused with its reason") {
   for (const Selection* where : {&line, &node}) {
     const auto r = world.orientation(*where);
     REQUIRE_FALSE(r);
-    CHECK_THAT(r.error(), Catch::Contains("one line or in one point at rest"));
+    CHECK_THAT(r.error(), ContainsSubstring("one line or in one point at rest"));
   }
   const auto r = world.orientation(wrong);
   REQUIRE_FALSE(r);
-  CHECK_THAT(r.error(), Catch::Contains("\"lid\"") && Catch::Contains("x0"));
+  CHECK_THAT(r.error(), ContainsSubstring("\"lid\"") && ContainsSubstring("x0"));
   Selection face;
   face.surfaces = {"x1"};
   put(world, body, [](const Vec3& X) { return Vec3{X.x, 0, 0}; });
   const auto collapsed = world.orientation(face);
   REQUIRE_FALSE(collapsed);
-  CHECK_THAT(collapsed.error(), Catch::Contains("now"));
+  CHECK_THAT(collapsed.error(), ContainsSubstring("now"));
 }
