@@ -105,7 +105,7 @@ PageSection section_through(std::span<const Vec3> points, std::span<const Index>
       shown = area;
       section.at[axis] = place;
     }
-    if (shown <= (axis == order.back() ? 1.5 : 1.02) * best) continue;
+    if (shown <= (axis == order.back() ? 2.5 : 1.02) * best) continue;
     best = shown;
     section.axis = axis;
   }

@@ -175,7 +175,7 @@ TEST_CASE("cuts go where most is seen, whatever the axes") {
   const PageSection s = section_through(points, triangles, 'z');
   CHECK(s.axis == 1);
   CHECK((s.at.x < 1 || s.at.x > 5));
-  // Seen from above it would show a little more; upright planes show how a body stands.
+  // Seen from above it would show more; upright planes show how a body stands.
   points.clear();
   triangles.clear();
   add_box({0, 0, 0}, {2, 2, 1.5}, points, triangles);

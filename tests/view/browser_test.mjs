@@ -234,6 +234,15 @@ const tests = {
     assert.ok(cut.yellow > 0.04 * cut.covered, `${cut.yellow} yellow of ${cut.covered} pixels after the cut`);
     await page.key('f');
     assert.notEqual((await pixels(page)).hash, cut.hash);
+    // Marked points of what is taken away go with it; those in the plane stay.
+    const marked = `[...document.querySelectorAll('.probe')].filter((l) => !l.hidden).length`;
+    assert.equal(await page.evaluate(marked), 2);
+    await page.key('z');
+    await pixels(page);
+    assert.equal(await page.evaluate(marked), 1, 'one of the ends of the finger is left');
+    await page.key('z');
+    await page.key('y');
+    await page.key('f');
     await page.key('y');
     assert.equal((await pixels(page)).hash, whole.hash);
     await finish(page);

@@ -198,7 +198,9 @@ class Viewer {
     if (!stage) return;
     stage.body.setGhost(state.ghost);
     stage.body.setEdges(state.edges);
-    stage.body.setCut(this.cutPlane());
+    const plane = this.cutPlane();
+    stage.body.setCut(plane);
+    stage.overlays.setCut(plane);
     stage.invalidate();
   }
 
