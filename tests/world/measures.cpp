@@ -12,11 +12,6 @@ using namespace test;
 
 namespace {
 
-void must(const Result<void>& done) {
-  INFO(done.error());
-  REQUIRE(done);
-}
-
 double length(const Vec3& v) {
   return std::sqrt(dot(v, v));
 }
@@ -65,8 +60,8 @@ std::vector<Vec3> moved(const World& world, BodyId body, const std::function<Vec
 }
 
 void put(World& world, BodyId body, const std::function<Vec3(const Vec3&)>& map) {
-  must(world.compile());
-  must(world.set_positions(body, moved(world, body, map)));
+  value(world.compile());
+  value(world.set_positions(body, moved(world, body, map)));
 }
 
 }  // namespace
@@ -130,10 +125,10 @@ TEST_CASE("momentum of a body that flies and spins is that of the rigid body") {
     World world = make_world(free_motion(implicit_midpoint()));
     const double density = random.in(500, 2000);
     const BodyId body = add_body(world, block_for(e), e, neo_hookean(1e6, 0.3), density);
-    must(world.compile());
+    value(world.compile());
     const Vec3 middle = 0.5 * kSize, v = random.vector(3), w = random.vector(2);
-    must(world.set_velocities(body,
-                              moved(world, body, [&](const Vec3& X) { return v + cross(w, X - middle); })));
+    value(world.set_velocities(body,
+                               moved(world, body, [&](const Vec3& X) { return v + cross(w, X - middle); })));
     const double mass = density * kSize.x * kSize.y * kSize.z;
     const auto square = [](double a) { return a * a; };
     const Vec3 spin{mass / 12 * (square(kSize.y) + square(kSize.z)) * w.x,
@@ -219,7 +214,7 @@ struct Chamber {
     def.control = control;
     def.amount = Curve::constant(control == CavityControl::pressure ? 1000 : 1);
     value(world.add(cavity(def)));
-    must(world.compile());
+    value(world.compile());
     rest = gauge(world, "volume");
     // Gas is let go from where the chamber is a little too large.
     if (control == CavityControl::gas)
@@ -337,7 +332,7 @@ TEST_CASE("the end of an arm that is bent to an arc has turned by the angle of t
 TEST_CASE("what has no rotation is refused with its reason") {
   World world = make_world(dynamic_options());
   const BodyId body = add_body(world, block_for(Element::tet4), Element::tet4, neo_hookean(1e5, 0.3));
-  must(world.compile());
+  value(world.compile());
   Selection line, node, wrong;
   line.boxes = {{Vec3{-1, -1e-6, -1e-6}, Vec3{2, 1e-6, 1e-6}}};
   node.nearest = {Vec3{1, 0, 0}};
