@@ -39,17 +39,17 @@ Result<SceneDef> find(const std::string& name, const Overrides& overrides) {
 class Progress {
  public:
   void header() const {
-    std::printf("%6s %10s %5s %9s %9s %9s %8s %8s %7s\n", "step", "time", "iter", "residual", "rows",
-                "volume err", "min J", "elapsed", "ETA");
+    std::printf("%6s %10s %5s %9s %9s %10s %8s %8s %7s\n", "step", "time", "iter", "residual", "rows",
+                "vol change", "min J", "elapsed", "ETA");
   }
   void line(const StepRecord& r, int steps) {
     if (r.rejected > 0 || r.stand_ins > 0) note_trouble(r);
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const double eta = r.step > 0 ? elapsed / r.step * (steps - r.step) : 0;
     const std::string step = std::to_string(r.step) + "/" + std::to_string(steps);
-    std::printf("%6s %10.4g %5d %9.1e %9.1e %9.1e  %8.4f %8s %7s\n", step.c_str(), r.time, r.iterations,
-                r.force_residual, r.row_residual, r.volume_error, r.min_J, duration(elapsed).c_str(),
-                duration(eta).c_str());
+    std::printf("%6s %10.4g %5d %9.1e %9.1e %8.3f %% %8.4f %8s %7s\n", step.c_str(), r.time, r.iterations,
+                r.force_residual, r.row_residual, 100 * r.total.volume_change(), r.min_J,
+                duration(elapsed).c_str(), duration(eta).c_str());
     std::fflush(stdout);
   }
 
@@ -95,15 +95,27 @@ void print_state(const RunResult& r) {
   for (std::size_t s = 0; s < r.supports.size(); ++s) {
     table.add({"reaction " + r.supports[s], vector_text(end.reactions[s].force), "N"});
   }
+  for (const VolumeMeasures& p : end.parts) {
+    table.add({"volume " + p.name, number(100 * p.volume_change(), 3) + " %",
+               "J " + number(p.min_J, 4) + " to " + number(p.max_J, 4)});
+  }
+  table.add({"volume rows", number(end.volume_row_residual, 2), "left over"});
+  table.add({"energy", number(end.total_energy(), 5),
+             "J: elastic " + number(end.elastic_energy) + ", kinetic " + number(end.kinetic_energy) +
+                 ", of the weight " + number(end.gravity_potential) + ", of loads " +
+                 number(end.load_potential)});
+  for (const Gauge& g : end.gauges) {
+    if (g.kind == "orientation" && g.quantity == "angle")
+      table.add({"turn of " + g.effect, number(g.value), g.unit});
+  }
   std::printf("\n%s", table.text("  ").c_str());
 }
 
 void print_summary(const RunResult& r, const std::string& folder) {
   print_metrics(r);
   print_state(r);
-  std::printf("\n%s: %s, %d Newton iterations, %d factorizations, %.2f s; volume error %.1e\n",
-              r.scene.c_str(), to_string(r.status), r.newton_iterations, r.factorizations, r.wall_s,
-              r.records.empty() ? 0.0 : r.records.back().volume_error);
+  std::printf("\n%s: %s, %d Newton iterations, %d factorizations, %.2f s\n", r.scene.c_str(),
+              to_string(r.status), r.newton_iterations, r.factorizations, r.wall_s);
   std::printf("outputs in %s/: index.html, %s.pvd, steps.csv, summary.json\n", folder.c_str(),
               r.scene.c_str());
 }

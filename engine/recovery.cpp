@@ -229,24 +229,30 @@ BodyFields recover_fields(const RecoveryInput& in) {
 
 BodyMeasures measure_body(const BodyData& body, const SystemParts& parts, std::span<const Vec3> x) {
   BodyMeasures m;
-  bool first = true;
+  const auto extend = [](VolumeMeasures& all, double volume, double rest, double low, double high) {
+    const bool first = all.rest_volume == 0;
+    all.volume += volume;
+    all.rest_volume += rest;
+    all.min_J = first ? low : std::min(all.min_J, low);
+    all.max_J = first ? high : std::max(all.max_J, high);
+  };
   for (const RegionData& region : body.regions) {
     auto data =
         solid_data(*body.reference, parts.rest, body.global_cells, region.cells, VolumeFunctions::none);
     if (!data) continue;
     const SolidPool pool("", std::move(data).value(), nullptr, VolumeStrain::linear);
+    VolumeMeasures part;
+    part.name = region.name;
     for (Index s = 0; s < pool.stencils(); ++s) {
       for (int q = 0; q < pool.data().points; ++q) {
         double F[9], strain = 0;
         pool.deformation_gradient(s, q, x, parts.rest, F, strain);
         const double w = pool.data().weight[at(s * pool.data().points + q)];
-        m.rest_volume += w;
-        m.volume += w * (1 + strain);
-        m.min_J = first ? 1 + strain : std::min(m.min_J, 1 + strain);
-        m.max_J = first ? 1 + strain : std::max(m.max_J, 1 + strain);
-        first = false;
+        extend(part, w * (1 + strain), w, 1 + strain, 1 + strain);
       }
     }
+    if (part.rest_volume > 0) extend(m, part.volume, part.rest_volume, part.min_J, part.max_J);
+    m.regions.push_back(std::move(part));
   }
   return m;
 }

@@ -146,6 +146,8 @@ struct World::Impl {
   void finish_report(StepReport& report, const StageSeconds& before, double total) const;
   // phi - target - C lambda of all compliant rows at the state.
   std::vector<double> row_residuals();
+  std::vector<Vec3> momenta() const;  // mass times velocity of every node [kg m/s]
+  double law_energy();                // [J]
   // Evaluates forces and multipliers at the state.
   void evaluate_state(Want want);
 };

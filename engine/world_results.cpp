@@ -53,43 +53,6 @@ const std::vector<std::string>& World::warnings() const {
   return impl_->builder.warnings();
 }
 
-BodyMeasures World::measures(BodyId body) const {
-  Impl& w = *impl_;
-  if (!w.compile()) return {};
-  const BodyData& b = w.builder.body(body);
-  BodyMeasures m = measure_body(b, w.system->parts(), w.state.x);
-  double mass = 0;
-  for (Index i = b.first_node; i < b.first_node + b.mesh.node_count(); ++i) {
-    mass += w.system->parts().mass[at(i)];
-    m.center_of_mass += w.system->parts().mass[at(i)] * w.state.x[at(i)];
-  }
-  m.center_of_mass = (1 / mass) * m.center_of_mass;
-  // What the rows of the body leave over, summed: the nodal rows of a region add up to its volume change less
-  // what their compliance grants. A body with one-field elements grants itself whatever it does.
-  const std::vector<double> theta = w.row_residuals();
-  const auto& pools = w.system->parts().row_pools;
-  for (std::size_t p = 0; p < pools.size(); ++p) {
-    const bool of_body =
-        pools[p]->law == RowLaw::compliant &&
-        std::any_of(b.regions.begin(), b.regions.end(), [&](const RegionData& r) {
-          return r.volume_pool[0] == pools[p]->stencil_pool || r.volume_pool[1] == pools[p]->stencil_pool;
-        });
-    const bool spanning = pools[p]->law == RowLaw::compliant &&
-                          std::any_of(b.spanning.begin(), b.spanning.end(), [&](const SpanningVolume& v) {
-                            return v.pool == pools[p]->stencil_pool;
-                          });
-    if (!of_body && !spanning) continue;
-    const auto first = at(w.system->first_row(static_cast<Index>(p)));
-    double sum = 0, volume = 0;
-    for (std::size_t r = 0; r < at(pools[p]->rows()); ++r) {
-      sum += theta[first + r];
-      volume += pools[p]->measure[r];
-    }
-    m.volume_error = std::max(m.volume_error, std::abs(sum) / volume);
-  }
-  return m;
-}
-
 std::vector<double> World::Impl::row_residuals() {
   evaluate_state(Want::value);
   std::vector<double> theta(at(system->rows()));
@@ -151,28 +114,6 @@ std::array<Vec3, 2> World::reaction(EffectId effect) const {
     sum[1] += cross(w.state.x[at(h.node)], f);
   }
   return sum;
-}
-
-double World::elastic_energy() const {
-  Impl& w = *impl_;
-  if (!w.compile()) return 0;
-  w.evaluate_state(Want::value);
-  double energy = w.newton->assembly().energy();
-  for (const ComplianceEntry& e : w.system->compliance()) {
-    const double product = e.value * w.state.lambda[at(e.row)] * w.state.lambda[at(e.col)];
-    energy += e.row == e.col ? 0.5 * product : product;
-  }
-  return energy;
-}
-
-double World::kinetic_energy() const {
-  double energy = 0;
-  if (!impl_->compiled()) return energy;
-  const auto& v = impl_->state.v;
-  std::vector<Vec3> momentum(v.size());
-  impl_->newton->assembly().mass_times(v, momentum);
-  for (std::size_t i = 0; i < v.size(); ++i) energy += 0.5 * dot(momentum[i], v[i]);
-  return energy;
 }
 
 double World::constitutive_residual() const {

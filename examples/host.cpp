@@ -81,6 +81,6 @@ int main(int argc, char** argv) {
     const double top = highest_point(&positions[0].x, positions.size());
     if (i % 10 == 0) std::printf("%.3f s  %4.0f Pa  top at %.2f mm\n", world.time(), pressure, 1e3 * top);
   }
-  std::printf("volume error %.1e\n", world.measures(cushion).volume_error);
+  std::printf("volume changed by %+.1e\n", world.measures(cushion).volume_change());
   return 0;
 }

@@ -14,7 +14,7 @@ constexpr double kHalvedCells = 4.0 / 3.0;
 // Counts and residuals have no error of discretization; extremes of J are those of single cells.
 bool has_error(Quantity q) {
   switch (q) {
-    case Quantity::volume_error:
+    case Quantity::volume_row_residual:
     case Quantity::constitutive_residual:
     case Quantity::newton_iterations:
     case Quantity::min_J:

@@ -5,6 +5,7 @@
 #include "isochor/schemes.h"
 #include "scenes/body_parts.h"
 #include "scenes/obstacle_files.h"
+#include "scenes/step_measures.h"
 
 namespace isochor {
 
@@ -154,6 +155,30 @@ Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, Bui
   return {};
 }
 
+// What is watched of meshes: nodes that have a rotation, regions that there are.
+Result<void> check_watched(const SceneDef& scene, const BuiltScene& built) {
+  for (std::size_t i = 0; i < scene.orientations.size(); ++i) {
+    if (const auto r = built.world.orientation(scene.orientations[i].where); !r)
+      return Error{place("orientations", i) + ".where: " + r.error()};
+  }
+  for (std::size_t i = 0; i < scene.metrics.size(); ++i) {
+    const MetricDef& m = scene.metrics[i];
+    const bool of_part = m.quantity == Quantity::volume_change || m.quantity == Quantity::volume ||
+                         m.quantity == Quantity::min_J || m.quantity == Quantity::max_J;
+    if (!of_part || m.of.empty()) continue;
+    std::string known;
+    bool found = false;
+    for (const VolumeMeasures& part : volume_parts(built)) {
+      found = found || part.name == m.of;
+      known += (known.empty() ? "\"" : ", \"") + part.name + "\"";
+    }
+    if (!found)
+      return Error{place("metrics", i) + ".of = \"" + m.of + "\" names no body or region; there are " +
+                   known};
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
@@ -181,6 +206,7 @@ Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
   if (auto r = add_bodies(scene, options, built); !r) return Error{r.error()};
   if (auto r = add_effects(scene, options, built); !r) return Error{r.error()};
   if (auto r = built.world.compile(); !r) return Error{r.error()};
+  if (auto r = check_watched(scene, built); !r) return Error{r.error()};
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Vec3 v = scene.bodies[b].velocity, w = scene.bodies[b].angular_velocity;
     if (v == Vec3{} && w == Vec3{}) continue;

@@ -82,6 +82,7 @@ Result<void> check_all_names(const SceneDef& s) {
   if (auto r = check_names("rigid_bodies", s.rigid_bodies, plain, seen); !r) return r;
   if (auto r = check_names("contacts", s.contacts, plain, seen); !r) return r;
   if (auto r = check_names("surface_contacts", s.surface_contacts, plain, seen); !r) return r;
+  if (auto r = check_names("orientations", s.orientations, plain, seen); !r) return r;
   return check_names("forces", s.forces, plain, seen);
 }
 
@@ -185,10 +186,32 @@ Result<void> require(const std::string& where, const char* what, const std::vect
                (known.empty() ? "none" : known)};
 }
 
+// "body.region" names a body too; names of bodies may have dots.
+std::string body_of_part(const SceneDef& s, const std::string& of) {
+  for (const SceneBody& b : s.bodies) {
+    if (of.starts_with(b.name + ".")) return b.name;
+  }
+  return of;
+}
+
 Result<void> check_metric(const SceneDef& s, const MetricDef& m, const std::string& where) {
   switch (m.quantity) {
     case Quantity::displacement:
+      if (has(s.orientations, m.of)) return {};
       return require(where, "probe", s.probes, m.of);
+    case Quantity::orientation_angle:
+    case Quantity::orientation_axis:
+    case Quantity::orientation_normal:
+      return require(where, "orientation", s.orientations, m.of);
+    case Quantity::linear_momentum:
+    case Quantity::angular_momentum:
+      return m.of.empty() ? Result<void>{} : require(where, "body", s.bodies, m.of);
+    case Quantity::volume_change:
+    case Quantity::volume:
+    case Quantity::min_J:
+    case Quantity::max_J:
+      // Regions are known when the meshes are read: build() looks at them.
+      return m.of.empty() ? Result<void>{} : require(where, "body", s.bodies, body_of_part(s, m.of));
     case Quantity::cavity_pressure:
     case Quantity::cavity_volume:
       return require(where, "cavity", s.cavities, m.of);

@@ -161,7 +161,8 @@ std::vector<PageSeries> curves_of(const std::string& csv) {
   std::vector<PageSeries> out(head.size());
   for (std::size_t c = 0; c < head.size(); ++c) {
     const auto dot = head[c].find('.');
-    const bool error = head[c].find("residual") != std::string::npos || head[c] == "volume_error";
+    const bool error = head[c].find("residual") != std::string::npos || head[c] == "volume_row_residual" ||
+                       head[c] == "volume_error";
     out[c].name = head[c];
     out[c].group = dot != std::string::npos ? head[c].substr(0, dot) : error ? "Errors" : head[c];
     out[c].log = error;

@@ -24,10 +24,25 @@ double gauge(const StepRecord& r, const std::string& effect, const char* quantit
   return it == r.gauges.end() ? std::nan("") : it->value;
 }
 
+double turned(const StepRecord& r, const MetricDef& m, const std::string& what) {
+  const auto of = [&](const char* axis) { return gauge(r, m.of, (what + axis).c_str()); };
+  return component({of("_x"), of("_y"), of("_z")}, m.component);
+}
+
+// Of the whole scene where nothing is named.
+const VolumeMeasures& part(const StepRecord& r, const std::string& name) {
+  return name.empty() ? r.total : r.parts[place_of(r.parts, name)];
+}
+
+std::array<Vec3, 2> momentum(const SceneDef& scene, const StepRecord& r, const std::string& body) {
+  return body.empty() ? r.momentum : r.momenta[place_of(scene.bodies, body)];
+}
+
 double quantity(const SceneDef& scene, const MetricDef& m, const std::vector<StepRecord>& records,
                 const StepRecord& r) {
   switch (m.quantity) {
     case Quantity::displacement:
+      if (place_of(scene.probes, m.of) == scene.probes.size()) return turned(r, m, "displacement");
       return component(r.probes[place_of(scene.probes, m.of)], m.component);
     case Quantity::cavity_pressure:
       return r.cavities[place_of(scene.cavities, m.of)].pressure;
@@ -56,18 +71,40 @@ double quantity(const SceneDef& scene, const MetricDef& m, const std::vector<Ste
       return component(r.reactions[place_of(scene.dirichlet, m.of)].force, m.component);
     case Quantity::reaction_moment:
       return component(r.reactions[place_of(scene.dirichlet, m.of)].moment, m.component);
-    case Quantity::volume_error:
-      return r.volume_error;
+    case Quantity::orientation_angle:
+      return gauge(r, m.of, "angle");
+    case Quantity::orientation_axis:
+      return turned(r, m, "axis");
+    case Quantity::orientation_normal:
+      return turned(r, m, "normal");
+    case Quantity::volume_row_residual:
+      return r.volume_row_residual;
+    case Quantity::volume_change:
+      return part(r, m.of).volume_change();
+    case Quantity::volume:
+      return part(r, m.of).volume;
     case Quantity::constitutive_residual:
       return r.constitutive_residual;
     case Quantity::min_J:
-      return r.min_J;
+      return part(r, m.of).min_J;
     case Quantity::max_J:
-      return r.max_J;
+      return part(r, m.of).max_J;
     case Quantity::elastic_energy:
       return r.elastic_energy;
     case Quantity::kinetic_energy:
       return r.kinetic_energy;
+    case Quantity::gravity_potential:
+      return r.gravity_potential;
+    case Quantity::load_potential:
+      return r.load_potential;
+    case Quantity::potential_energy:
+      return r.potential_energy();
+    case Quantity::total_energy:
+      return r.total_energy();
+    case Quantity::linear_momentum:
+      return component(momentum(scene, r, m.of)[0], m.component);
+    case Quantity::angular_momentum:
+      return component(momentum(scene, r, m.of)[1], m.component);
     case Quantity::newton_iterations:
       break;
   }

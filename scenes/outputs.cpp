@@ -33,10 +33,26 @@ std::vector<double> region_of_cells(const Mesh& mesh) {
   return region;
 }
 
+// Columns of bodies, regions and momentum come last.
+std::string part_columns(const RunResult& r) {
+  std::string line;
+  if (r.records.empty()) return line;
+  for (const VolumeMeasures& p : r.records.front().parts)
+    line += "," + p.name + ".body_volume_m3," + p.name + ".volume_change," + p.name + ".min_J," + p.name +
+            ".max_J";
+  for (const char* of : {"linear_momentum_", "angular_momentum_"}) {
+    const char* unit = of[0] == 'l' ? "_kg_m_s" : "_kg_m2_s";
+    for (const char* axis : {"x", "y", "z"}) line += std::string(",") + of + axis + unit;
+  }
+  return line;
+}
+
 std::string table_header(const RunResult& r) {
   std::string line =
       "step,time,iterations,substeps,rejected,stand_ins,force_residual,row_residual,constitutive_residual,"
-      "volume_error,min_J,max_J,inverted_cells,elastic_energy_J,kinetic_energy_J,seconds";
+      "volume_row_residual,volume_change,min_J,max_J,inverted_cells,elastic_energy_J,kinetic_energy_J,"
+      "gravity_potential_J,"
+      "load_potential_J,total_energy_J,seconds";
   for (const auto& p : r.probes) line += "," + p + ".x_m," + p + ".y_m," + p + ".z_m";
   for (const auto& c : r.cavities) line += "," + c + ".pressure_Pa," + c + ".volume_m3";
   for (const auto& s : r.supports) {
@@ -49,6 +65,7 @@ std::string table_header(const RunResult& r) {
       line += "," + g.effect + "." + g.quantity + (g.unit == "1" ? "" : "_" + g.unit);
     }
   }
+  line += part_columns(r);
   return line + "\n";
 }
 
@@ -57,8 +74,9 @@ std::string table_row(const StepRecord& r) {
   for (const double v :
        {r.time, static_cast<double>(r.iterations), static_cast<double>(r.substeps),
         static_cast<double>(r.rejected), static_cast<double>(r.stand_ins), r.force_residual, r.row_residual,
-        r.constitutive_residual, r.volume_error, r.min_J, r.max_J, static_cast<double>(r.inverted_cells),
-        r.elastic_energy, r.kinetic_energy, r.seconds}) {
+        r.constitutive_residual, r.volume_row_residual, r.total.volume_change(), r.min_J, r.max_J,
+        static_cast<double>(r.inverted_cells), r.elastic_energy, r.kinetic_energy, r.gravity_potential,
+        r.load_potential, r.total_energy(), r.seconds}) {
     line += "," + number(v);
   }
   const auto add = [&](const Vec3& v) { line += "," + number(v.x) + "," + number(v.y) + "," + number(v.z); };
@@ -69,6 +87,10 @@ std::string table_row(const StepRecord& r) {
     add(s.moment);
   }
   for (const Gauge& g : r.gauges) line += "," + number(g.value);
+  for (const VolumeMeasures& p : r.parts) {
+    for (const double v : {p.volume, p.volume_change(), p.min_J, p.max_J}) line += "," + number(v);
+  }
+  for (const Vec3& v : r.momentum) add(v);
   return line + "\n";
 }
 

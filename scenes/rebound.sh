@@ -53,7 +53,7 @@ row() {
       if (z < lowest) lowest = z
       touching = $column["floor.normal_force_N"] > 1e-3 * mass * g
       if (touching) last = steps
-      volume = $column["volume_error"]
+      volume = $column["volume_row_residual"]
       if (volume < 0) volume = -volume
       if (volume > worst) worst = volume
       if (steps == 1 || $column["min_J"] < least) least = $column["min_J"]
@@ -67,7 +67,7 @@ row() {
     }' "$work/run/steps.csv"
 }
 
-printf '| tets | element | scheme | step [ms] | middle of mass sinks by [mm] | leaves after [ms] | rebound [mm] | volume error | least J | iterations a step | wall time [s] |\n'
+printf '| tets | element | scheme | step [ms] | middle of mass sinks by [mm] | leaves after [ms] | rebound [mm] | left by volume rows | least J | iterations a step | wall time [s] |\n'
 printf '|---|---|---|---|---|---|---|---|---|---|---|\n'
 coarse=$root/scenes/meshes/ball.msh
 fine=$root/out/meshes/ball_fine.msh

@@ -12,6 +12,7 @@
 #include "scenes/outputs.h"
 #include "scenes/probes.h"
 #include "scenes/scene_file.h"
+#include "scenes/step_measures.h"
 
 namespace isochor {
 
@@ -129,16 +130,6 @@ void Run::record(int step, const StepReport& report) {
   r.warning = report.warning;
   if (!r.warning.empty() && doubtful_steps_++ == 0)
     warn("step " + std::to_string(step) + ", t = " + number(world.time()) + ": " + r.warning);
-  r.min_J = INFINITY;
-  r.max_J = -INFINITY;
-  for (const BodyId id : built_.bodies) {
-    const BodyMeasures m = world.measures(id);
-    r.volume_error = std::max(r.volume_error, m.volume_error);
-    r.min_J = std::min(r.min_J, m.min_J);
-    r.max_J = std::max(r.max_J, m.max_J);
-  }
-  r.elastic_energy = world.elastic_energy();
-  r.kinetic_energy = world.kinetic_energy();
   for (std::size_t p = 0; p < probes_.size(); ++p) {
     const BodyId id = built_.bodies[static_cast<std::size_t>(scene_.probes[p].body)];
     r.probes.push_back(probes_[p].at(world.positions(id)) - probes_[p].at(world.rest_positions(id)));
@@ -156,6 +147,7 @@ void Run::record(int step, const StepReport& report) {
     r.gauges.push_back(
         {"path", "equilibrium", "unstable directions", "", static_cast<double>(report.unstable_directions)});
   }
+  record_measures(scene_, built_, r);
   for (const EffectId id : built_.dirichlet) {
     const auto [force, moment] = world.reaction(id);
     r.reactions.push_back({force, moment});

@@ -26,13 +26,22 @@ struct StepRecord {
   int iterations = 0, substeps = 0, rejected = 0, factorizations = 0;
   int stand_ins = 0;  // increments that the method of the scene left to another one
   double force_residual = 0, row_residual = 0, constitutive_residual = 0;
-  double volume_error = 0;  // the largest of all bodies
+  // What the volume rows leave over, the largest of all bodies; says nothing of volume that a compressible
+  // body has lost, see `total` and `parts`.
+  double volume_row_residual = 0;
   double min_J = 1, max_J = 1;
-  Index inverted_cells = 0;                       // cells with J <= 0
-  std::string warning;                            // StepReport::warning
-  double elastic_energy = 0, kinetic_energy = 0;  // [J]
-  double seconds = 0;                             // of this step's solve
-  std::vector<Vec3> probes;                       // displacement of each probe [m]
+  Index inverted_cells = 0;                          // cells with J <= 0
+  std::string warning;                               // StepReport::warning
+  double elastic_energy = 0, kinetic_energy = 0;     // [J]
+  double gravity_potential = 0, load_potential = 0;  // as in Energies, the latter with pressures [J]
+  double potential_energy() const { return elastic_energy + gravity_potential + load_potential; }  // [J]
+  double total_energy() const { return kinetic_energy + potential_energy(); }                      // [J]
+  VolumeMeasures total;                      // of all bodies together
+  std::vector<VolumeMeasures> parts;         // bodies, and regions as "body.region" where a body has several
+  std::array<Vec3, 2> momentum{};            // linear [kg m/s], angular about the origin [kg m^2/s]
+  std::vector<std::array<Vec3, 2>> momenta;  // the same of each body
+  double seconds = 0;                        // of this step's solve
+  std::vector<Vec3> probes;                  // displacement of each probe [m]
   std::vector<CavityState> cavities;
   std::vector<Reaction> reactions;  // of each dirichlet support
   std::vector<Gauge> gauges;        // what else effects report, in the same order at every step

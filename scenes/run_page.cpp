@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "page_surface.h"
+#include "scenes/section_plane.h"
 
 namespace isochor {
 
@@ -81,6 +82,34 @@ PageSeries series(const RunResult& r, const char* group, const std::string& name
   return s;
 }
 
+// Volumes, energies and momentum.
+void add_measures(const RunView& view, std::vector<PageSeries>& out) {
+  const RunResult& r = view.result;
+  const std::size_t parts = r.records.empty() ? 0 : r.records.front().parts.size();
+  for (std::size_t p = 0; p < parts; ++p) {
+    out.push_back(series(r, "Change of volume", r.records.front().parts[p].name, "%",
+                         [p](const StepRecord& s) { return 100 * s.parts[p].volume_change(); }));
+  }
+  const bool moves = view.scene.analysis.type == AnalysisType::dynamics;
+  const auto energy = [&](const char* name, auto value) {
+    auto s = series(r, "Energies", name, "J", value);
+    // Of what the scene does not have there is no curve.
+    if (std::any_of(s.y.begin(), s.y.end(), [](double v) { return v != 0; })) out.push_back(std::move(s));
+  };
+  energy("elastic", [](const StepRecord& s) { return s.elastic_energy; });
+  energy("kinetic", [](const StepRecord& s) { return s.kinetic_energy; });
+  energy("of the weight", [](const StepRecord& s) { return s.gravity_potential; });
+  energy("of loads", [](const StepRecord& s) { return s.load_potential; });
+  energy("total", [](const StepRecord& s) { return s.total_energy(); });
+  for (std::size_t kind = 0; moves && kind < 2; ++kind) {
+    for (int k = 0; k < 3; ++k) {
+      out.push_back(series(r, kind == 0 ? "Linear momentum" : "Angular momentum", std::string(1, "xyz"[k]),
+                           kind == 0 ? "kg m/s" : "kg m\u00b2/s",
+                           [kind, k](const StepRecord& s) { return s.momentum[kind][k]; }));
+    }
+  }
+}
+
 std::vector<PageSeries> all_series(const RunView& view) {
   const RunResult& r = view.result;
   std::vector<PageSeries> out;
@@ -92,7 +121,9 @@ std::vector<PageSeries> all_series(const RunView& view) {
   }
   for (std::size_t i = 0; !r.records.empty() && i < r.records.front().gauges.size(); ++i) {
     const Gauge& g = r.records.front().gauges[i];
-    out.push_back(series(r, "Gauges", g.effect + " " + g.quantity, g.unit.c_str(),
+    const bool turn = g.kind == "orientation";
+    const std::string unit = g.unit == "1" ? "" : g.unit;
+    out.push_back(series(r, turn ? "Orientations" : "Gauges", g.effect + " " + g.quantity, unit.c_str(),
                          [i](const StepRecord& s) { return s.gauges[i].value; }));
   }
   for (std::size_t p = 0; p < r.probes.size(); ++p) {
@@ -101,23 +132,65 @@ std::vector<PageSeries> all_series(const RunView& view) {
                            [p, k](const StepRecord& s) { return s.probes[p][k]; }));
     }
   }
-  out.push_back(series(r, "Energies", "elastic", "J", [](const StepRecord& s) { return s.elastic_energy; }));
-  if (view.scene.analysis.type == AnalysisType::dynamics) {
-    out.push_back(
-        series(r, "Energies", "kinetic", "J", [](const StepRecord& s) { return s.kinetic_energy; }));
-  }
+  add_measures(view, out);
   out.push_back(
       series(r, "Newton iterations", "iterations", "", [](const StepRecord& s) { return s.iterations; }));
   // A logarithmic chart cannot show the zero of the rest state.
   const auto positive = [](double v) { return std::max(v, 1e-18); };
-  out.push_back(
-      series(r, "Errors", "volume error", "", [&](const StepRecord& s) { return positive(s.volume_error); }));
+  out.push_back(series(r, "Errors", "left by volume rows", "",
+                       [&](const StepRecord& s) { return positive(s.volume_row_residual); }));
   out.push_back(series(r, "Errors", "force residual", "",
                        [&](const StepRecord& s) { return positive(s.force_residual); }));
   out.push_back(
       series(r, "Errors", "row residual", "", [&](const StepRecord& s) { return positive(s.row_residual); }));
   for (auto& s : out) s.log = s.group == "Errors";
   return out;
+}
+
+// The unit of a metric as the charts have it, and what it takes to get there.
+std::pair<std::string, double> chart_unit(const std::string& unit) {
+  struct Unit {
+    const char *name, *base;
+    double factor;
+  };
+  static constexpr Unit kUnits[] = {{"m", "m", 1},
+                                    {"mm", "m", 1e-3},
+                                    {"cm", "m", 1e-2},
+                                    {"um", "m", 1e-6},
+                                    {"Pa", "Pa", 1},
+                                    {"kPa", "Pa", 1e3},
+                                    {"MPa", "Pa", 1e6},
+                                    {"bar", "Pa", 1e5},
+                                    {"N", "N", 1},
+                                    {"mN", "N", 1e-3},
+                                    {"kN", "N", 1e3},
+                                    {"J", "J", 1},
+                                    {"mJ", "J", 1e-3},
+                                    {"s", "s", 1},
+                                    {"ms", "s", 1e-3},
+                                    {"m^3", "m\u00b3", 1},
+                                    {"cm^3", "m\u00b3", 1e-6},
+                                    {"mm^3", "m\u00b3", 1e-9},
+                                    {"mL", "m\u00b3", 1e-6},
+                                    {"L", "m\u00b3", 1e-3},
+                                    {"m\u00b3", "m\u00b3", 1},
+                                    {"cm\u00b3", "m\u00b3", 1e-6}};
+  for (const Unit& u : kUnits) {
+    if (unit == u.name) return {u.base, u.factor};
+  }
+  return {"", 1};
+}
+
+PageEntry metric_entry(const MetricValue& m) {
+  const auto [unit, factor] = chart_unit(m.def.unit);
+  if (!unit.empty() && std::isfinite(m.value)) {
+    PageEntry entry{m.def.name, m.error ? "#0 (reference #1)" : "#0", {factor * m.value}, unit};
+    if (m.error) entry.numbers.push_back(factor * *m.def.reference);
+    return entry;
+  }
+  std::string text = number(m.value, "%.5g") + (m.def.unit.empty() ? "" : " " + m.def.unit);
+  if (m.error) text += " (reference " + number(*m.def.reference, "%.5g") + ")";
+  return {m.def.name, text};
 }
 
 PageReport report(const RunView& view) {
@@ -136,12 +209,13 @@ PageReport report(const RunView& view) {
                                 (r.threads == 1 ? " thread" : " threads")}};
   const StepRecord& end = r.records.back();
   page.summary = {{"Status", to_string(r.status)},
-                  {"Volume error", number(end.volume_error, "%.1e")},
-                  {"J", number(end.min_J) + " to " + number(end.max_J)}};
+                  {"Left by volume rows", number(end.volume_row_residual, "%.1e")}};
+  for (const VolumeMeasures& p : end.parts) {
+    page.summary.push_back({"Volume of " + p.name, number(100 * p.volume_change(), "%+.3g") + " %, J " +
+                                                       number(p.min_J) + " to " + number(p.max_J)});
+  }
   for (const MetricValue& m : r.metrics) {
-    std::string text = number(m.value, "%.5g") + (m.def.unit.empty() ? "" : " " + m.def.unit);
-    if (m.error) text += " (reference " + number(*m.def.reference, "%.5g") + ")";
-    page.summary.push_back({m.def.name, text});
+    if (m.def.quantity != Quantity::volume_row_residual) page.summary.push_back(metric_entry(m));
   }
   for (const auto& w : r.warnings) page.notes.push_back(w);
   if (r.status != RunStatus::converged) {
@@ -176,6 +250,41 @@ std::vector<EmbeddedPoint> add_page_surface(PageScene& scene, const Mesh& mesh, 
 
 }  // namespace
 
+namespace {
+
+// Triangles of the bodies that bound a chamber, all of their corners being nodes of its surfaces; all
+// triangles where there is none.
+std::vector<Index> triangles_to_cut(const RunView& view, const PageScene& scene,
+                                    std::span<const std::vector<Index>> node_of_vertex) {
+  std::vector<bool> on_chamber(scene.rest.size(), false);
+  std::size_t first = 0;
+  for (std::size_t b = 0; b < node_of_vertex.size(); ++b) {
+    const Mesh& mesh = view.built.world.mesh(view.built.bodies[b]);
+    std::vector<bool> wall(mesh.nodes.size(), false);
+    for (const CavityDef& cavity : view.scene.cavities) {
+      if (static_cast<std::size_t>(cavity.body) != b) continue;
+      for (const MeshSurface& s : mesh.surfaces) {
+        if (std::find(cavity.surfaces.begin(), cavity.surfaces.end(), s.name) == cavity.surfaces.end())
+          continue;
+        for (const Index n : s.faces) wall[static_cast<std::size_t>(n)] = true;
+      }
+    }
+    for (std::size_t v = 0; v < node_of_vertex[b].size(); ++v)
+      on_chamber[first + v] = wall[static_cast<std::size_t>(node_of_vertex[b][v])];
+    first += node_of_vertex[b].size();
+  }
+  std::vector<Index> out;
+  for (std::size_t t = 0; t < scene.triangles.size(); t += 3) {
+    const auto corners = std::span(scene.triangles).subspan(t, 3);
+    if (std::all_of(corners.begin(), corners.end(),
+                    [&](Index v) { return on_chamber[static_cast<std::size_t>(v)]; }))
+      out.insert(out.end(), corners.begin(), corners.end());
+  }
+  return out.empty() ? scene.triangles : out;
+}
+
+}  // namespace
+
 std::unique_ptr<RunPage> RunPage::start(const RunView& view) {
   if (!results_page_available()) return nullptr;
   PageScene scene;
@@ -193,6 +302,10 @@ std::unique_ptr<RunPage> RunPage::start(const RunView& view) {
     else
       vertices.push_back({{}, add_page_surface(scene, mesh, surface, part)});
   }
+  std::vector<std::vector<Index>> nodes;
+  for (const Vertices& v : vertices)
+    nodes.push_back(v.nodes.empty() ? std::vector<Index>(v.points.size(), 0) : v.nodes);
+  std::vector<Index> to_cut = triangles_to_cut(view, scene, nodes);
   scene.fields = page_fields(view.scene);
   scene.probes = view.result.probes;
   scene.up = up_axis(view.scene);
@@ -204,7 +317,7 @@ std::unique_ptr<RunPage> RunPage::start(const RunView& view) {
     return nullptr;
   }
   return std::unique_ptr<RunPage>(
-      new RunPage(std::move(recorder).value(), std::move(vertices), std::move(overlays)));
+      new RunPage(std::move(recorder).value(), std::move(vertices), std::move(overlays), std::move(to_cut)));
 }
 
 PageFrame RunPage::append(const RunView& view, const std::vector<BodyFields>& fields) {
@@ -243,6 +356,7 @@ PageFrame RunPage::append(const RunView& view, const std::vector<BodyFields>& fi
       if (contact) frame.fields[4].push_back(interpolated(p, touched));
     }
   }
+  if (!to_cut_.empty()) section_ = section_through(frame.positions, to_cut_, up_axis(view.scene));
   overlays_.append(view, frame);
   const auto& displacement = view.result.records.back().probes;
   for (std::size_t p = 0; p < displacement.size(); ++p) {
@@ -257,7 +371,10 @@ void RunPage::append(const PageFrame& frame) {
 }
 
 Result<void> RunPage::write(const RunView& view, const std::string& path) {
-  return recorder_.write(path, report(view));
+  if (!failure_.empty()) return Error{failure_};
+  PageReport page = report(view);
+  page.section = section_;
+  return recorder_.write(path, page);
 }
 
 }  // namespace isochor

@@ -33,12 +33,18 @@ class RunPage {
     std::vector<Index> nodes;
     std::vector<EmbeddedPoint> points;
   };
-  RunPage(ResultsRecorder recorder, std::vector<Vertices> vertices, RunOverlays overlays)
-      : recorder_(std::move(recorder)), vertices_(std::move(vertices)), overlays_(std::move(overlays)) {}
+  RunPage(ResultsRecorder recorder, std::vector<Vertices> vertices, RunOverlays overlays,
+          std::vector<Index> to_cut)
+      : recorder_(std::move(recorder)),
+        vertices_(std::move(vertices)),
+        overlays_(std::move(overlays)),
+        to_cut_(std::move(to_cut)) {}
 
   ResultsRecorder recorder_;
   std::vector<Vertices> vertices_;  // by body
   RunOverlays overlays_;
+  std::vector<Index> to_cut_;           // triangles that cuts are to show the inside of
+  std::optional<PageSection> section_;  // of the last frame
   std::string failure_;
 };
 

@@ -132,6 +132,12 @@ struct ProbeDef {
   Vec3 point{};  // rest position [m]
 };
 
+// A face or another set of nodes whose turn, displacement and normal the scene reports (World::orientation).
+struct OrientationDef {
+  std::string name;
+  Selection where;
+};
+
 struct OutputDef {
   int every = 1;     // a .vtu every so many steps and at the end; 0: none
   bool page = true;  // the HTML results page
@@ -142,7 +148,7 @@ struct OutputDef {
 };
 
 enum class Quantity : std::uint8_t {
-  displacement,     // of a probe [m]
+  displacement,     // of a probe or orientation [m]
   cavity_pressure,  // [Pa]
   cavity_volume,    // [m^3]
   cable_tension,    // [N]
@@ -150,18 +156,29 @@ enum class Quantity : std::uint8_t {
   rigid_x,          // position of a free rigid body [m]
   rigid_y,
   rigid_z,
-  contact_force,     // on the body, friction included [N]
-  contact_area,      // [m^2]
-  contact_pressure,  // the largest [Pa]
-  contact_gap,       // the smallest [m]
-  reaction_force,    // of a support [N]
-  reaction_moment,   // of a support, about the origin [N m]
-  volume_error,
+  contact_force,       // on the body, friction included [N]
+  contact_area,        // [m^2]
+  contact_pressure,    // the largest [Pa]
+  contact_gap,         // the smallest [m]
+  reaction_force,      // of a support [N]
+  reaction_moment,     // of a support, about the origin [N m]
+  orientation_angle,   // [deg]
+  orientation_axis,    // unit vector
+  orientation_normal,  // unit vector
+  volume_row_residual,
+  volume_change,  // of the scene, a body or "body.region": relative, negative where volume was lost
+  volume,         // likewise [m^3]
   constitutive_residual,
-  min_J,
+  min_J,  // likewise
   max_J,
   elastic_energy,     // [J]
   kinetic_energy,     // [J]
+  gravity_potential,  // [J], like all below as in Energies
+  load_potential,     // of dead loads and given pressures and tensions [J]
+  potential_energy,   // [J]
+  total_energy,       // [J]
+  linear_momentum,    // of the scene or a body [kg m/s]
+  angular_momentum,   // about the origin [kg m^2/s]
   newton_iterations,  // of all steps up to then
 };
 enum class Component : std::uint8_t { magnitude, x, y, z };
@@ -170,7 +187,7 @@ enum class Component : std::uint8_t { magnitude, x, y, z };
 struct MetricDef {
   std::string name;
   Quantity quantity = Quantity::displacement;
-  std::string of;  // probe, cavity or support
+  std::string of;  // probe, cavity, support, body...
   Component component = Component::magnitude;
   double scale = 1;                 // multiplies the quantity: 4 for a quarter model, 1e3 for millimeters
   std::optional<double> time;       // of a reported step; absent: the end
@@ -208,6 +225,7 @@ struct SceneDef {
   Curve gravity_amount = Curve::constant(1);  // scales it over time
   AnalysisDef analysis;
   std::vector<ProbeDef> probes;
+  std::vector<OrientationDef> orientations;
   OutputDef outputs;
   std::vector<MetricDef> metrics;
 };

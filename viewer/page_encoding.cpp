@@ -121,10 +121,34 @@ std::vector<std::uint16_t> quantize_points(std::span<const Vec3> points, std::sp
   return codes;
 }
 
+namespace {
+
+// The values are put in another order.
+void find_usual_range(QuantizedField& field, std::vector<double>& values, bool zeros) {
+  field.usual_low = field.low;
+  field.usual_high = field.high;
+  if (values.empty()) return;
+  const auto quantile = [&](std::size_t place) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(place);
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+  };
+  const std::size_t cut = values.size() / 100;
+  field.usual_low = quantile(cut);
+  field.usual_high = quantile(values.size() - 1 - cut);
+  if (!zeros) return;
+  field.usual_low = std::min(field.usual_low, 0.0);
+  field.usual_high = std::max(field.usual_high, 0.0);
+}
+
+}  // namespace
+
 QuantizedField quantize_field(std::span<const double> values, std::span<const std::uint8_t> skip) {
   const auto skipped = [&](std::size_t i) { return !skip.empty() && skip[i] != 0; };
   QuantizedField out;
-  bool any = false;
+  bool any = false, zeros = false;
+  std::vector<double> counted;
+  counted.reserve(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double v = values[i];
     if (skipped(i)) continue;
@@ -135,8 +159,11 @@ QuantizedField quantize_field(std::span<const double> values, std::span<const st
     out.low = any ? std::min(out.low, v) : v;
     out.high = any ? std::max(out.high, v) : v;
     any = true;
+    zeros = zeros || v == 0;
+    if (v != 0) counted.push_back(v);
   }
   if (!any) out.low = out.high = std::nan("");
+  find_usual_range(out, counted, zeros);
   // Halves first: the difference of two large numbers of opposite sign may overflow.
   const double half_span = 0.5 * out.high - 0.5 * out.low;
   out.codes.reserve(values.size());

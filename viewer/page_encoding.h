@@ -51,6 +51,9 @@ struct QuantizedField {
   std::vector<std::uint16_t> codes;
   double low = 0, high = 0;
   std::size_t invalid = 0;  // values that were not finite
+  // From the first to the 99th hundredth of the values: what one hot spot does not set. Exact zeros, where
+  // nothing is (no contact), are in the range but not among the values it is taken from.
+  double usual_low = 0, usual_high = 0;
 };
 // Values whose entry in skip is not zero are coded as invalid, but neither counted nor in the range. An empty
 // skip skips nothing.

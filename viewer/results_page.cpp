@@ -210,6 +210,12 @@ void write_entries(Json& json, std::string_view name, const std::vector<PageEntr
     json.begin('[');
     json.value(std::string_view(entry.key));
     json.value(std::string_view(entry.value));
+    if (!entry.numbers.empty()) {
+      json.begin('[');
+      for (const double v : entry.numbers) json.value(v);
+      json.end(']');
+      json.value(std::string_view(entry.unit));
+    }
     json.end(']');
   }
   json.end(']');
@@ -280,6 +286,16 @@ void write_report(Json& json, const PageReport& report) {
   json.pair("symbol", report.x_symbol);
   json.pair("unit", report.x_unit);
   json.end('}');
+  if (report.section) {
+    json.key("section");
+    json.begin('{');
+    json.pair("axis", std::string_view("xyz").substr(static_cast<std::size_t>(report.section->axis), 1));
+    json.key("at");
+    json.begin('[');
+    json.point(report.section->at);
+    json.end(']');
+    json.end('}');
+  }
   json.key("series");
   json.begin('[');
   for (const PageSeries& series : report.series) {
@@ -362,6 +378,8 @@ Result<void> ResultsRecorder::append(const PageFrame& frame) {
     json.value(field.low);
     json.value(field.high);
     json.count(field.invalid);
+    json.value(field.usual_low);
+    json.value(field.usual_high);
     json.end(']');
   }
   json.end(']');

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -79,7 +80,16 @@ struct PageSeries {
 
 struct PageEntry {
   std::string key;
-  std::string value;
+  std::string value;  // "#0" and "#1" in it stand for the first two of `numbers`
+  // Shown with the prefix of the unit that the charts of this unit have, so that both read alike.
+  std::vector<double> numbers = {};
+  std::string unit = {};  // of the numbers as given: "Pa"
+};
+
+// The planes across x, y and z at which a body is best cut open, and the best of the three.
+struct PageSection {
+  int axis = 0;  // 0 x, 1 y, 2 z
+  Vec3 at{};     // the plane across x at at.x, and so on [m]
 };
 
 // The words and curves around the picture.
@@ -94,6 +104,7 @@ struct PageReport {
   std::string x_symbol = "t";
   std::string x_unit = "s";
   std::vector<PageSeries> series;
+  std::optional<PageSection> section;  // where cuts open; none: in the middle of everything shown
 };
 
 // A whole run at once, for hosts that hold all frames anyway.

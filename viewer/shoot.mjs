@@ -6,8 +6,10 @@
 // Without --page the picture shows the 3D view and its legend; with it the page as a reader sees it, at full
 // length. The key=value pairs are the options of the page:
 //   field=NAME  frame=first|last|N|t=SECONDS  view=iso|front|back|left|right|top|bottom|AZIMUTH,ELEVATION
-//   zoom=1.2  ghost=1  edges=1  cut=x:0.5 (cut=-x:0.5 keeps the other half)  range=LOW,HIGH|frame
-//   legend=0  labels=0  theme=light|dark
+//   zoom=1.2  ghost=1  edges=1  cut=auto|x|y|z (cut=x:0.5 at a place, cut=-x:0.5 keeps the other half)
+//   range=LOW,HIGH|frame  full=1 (colors span all values, not 1 % to 99 % of the points)  legend=0  labels=0
+//   theme=light|dark
+// Options that are unknown or have a value they cannot have are refused, with what there is.
 import { existsSync, renameSync, writeFileSync } from 'node:fs';
 import { resolve } from 'node:path';
 import { pathToFileURL } from 'node:url';
@@ -48,11 +50,14 @@ const hash = [...(whole ? [] : ['shot=1']), ...query].map((pair) => {
 }).join('&');
 const browser = await Browser.launch();
 let problem = null;
+let refused = [];
 try {
   const page = await browser.open(`${pathToFileURL(resolve(files[0]))}#${hash}`, { width: size[0], height: size[1], scale, dark });
   await page.waitFor('window.isochorReady === true');
   const error = await page.evaluate('window.isochorError ?? null');
   if (error) throw new Error(`the page cannot show its results: ${error}\n${page.errors.join('\n')}`);
+  refused = await page.evaluate('window.isochorProblems ?? []');
+  if (refused.length > 0) throw new Error(refused.join('\nshoot: '));
   if (whole) {
     // Charts below the window wait until they are seen.
     await page.evaluate('window.isochorViewer?.plots?.drawAll()');
@@ -70,4 +75,4 @@ try {
 } finally {
   await browser.close();
 }
-if (problem) fail(problem);
+if (problem) fail(problem, refused.length > 0 ? 2 : 1);

@@ -22,6 +22,7 @@ namespace isochor {
 
 class EffectSource;  // engine-side
 class TimeScheme;    // engine-side
+struct Selection;    // <isochor/effects.h>
 
 // A constraint, load or support, made by the functions of <isochor/effects.h>. Resolved when the world is
 // compiled.
@@ -183,12 +184,52 @@ struct WorldSize {
   std::size_t engine_bytes = 0;
 };
 
-// What the deformation of a body looks like now.
-struct BodyMeasures {
+// Volume of a body, or of one of its regions, now and at rest.
+struct VolumeMeasures {
+  std::string name;                    // of the region, or of the body
   double volume = 0, rest_volume = 0;  // [m^3]
-  double volume_error = 0;             // relative change of volume beyond what the rows' compliance allows
   double min_J = 0, max_J = 0;         // over cells (points of a Tet10)
-  Vec3 center_of_mass{};               // of the masses at the nodes [m]
+  // Relative, negative where volume was lost.
+  double volume_change() const { return rest_volume > 0 ? volume / rest_volume - 1 : 0; }
+};
+
+// What the deformation and the motion of a body look like now.
+struct BodyMeasures : VolumeMeasures {
+  // What the volume rows of the body leave over, relative to the volume behind them. Compressible bodies may
+  // lose volume while it is zero: volume_change() tells what they lost.
+  double volume_row_residual = 0;
+  double volume_error = 0;              // the same number by its former name
+  Vec3 center_of_mass{};                // of the masses at the nodes [m]
+  double mass = 0;                      // [kg]
+  Vec3 linear_momentum{};               // [kg m/s]
+  Vec3 angular_momentum{};              // about the origin [kg m^2/s]
+  std::vector<VolumeMeasures> regions;  // in the order of the mesh
+};
+
+// Energies of the whole scene now. Potentials are those of the loads as they are now, zero at rest positions;
+// what loads did on their way there, supports that move, valves, friction and damping do work that is not in
+// here.
+struct Energies {
+  double kinetic = 0;  // [J]
+  double elastic = 0;  // elastic_energy() [J]
+  double gravity = 0;  // of the weight: -sum m g . (x - X) [J]
+  double loads = 0;    // of tractions and point forces: -sum f . (x - X) [J]
+  // Of given pressures and tensions, -p (V - V0) and T (L - L0), and of the gas in closed chambers [J].
+  double pressures = 0;
+  double potential() const { return elastic + gravity + loads + pressures; }
+  double total() const { return kinetic + potential(); }
+};
+
+// How a set of nodes has turned and moved since rest: the rigid motion that fits it best.
+struct Orientation {
+  double angle = 0;     // [rad], 0 to pi: more than half a turn reads as the rest of it the other way round
+  Vec3 axis{};          // unit vector of the turn, by the right hand; zero for no turn
+  Vec3 displacement{};  // of the middle of the set [m]
+  // Unit vector. Surfaces: the mean normal of their faces now. Other sets: the direction in which they are
+  // flattest at rest, away from the body, turned with them. Zero for what has no direction: closed surfaces,
+  // and sets that are more than 0.7 times as thick as they are wide.
+  Vec3 normal{};
+  double misfit = 0;  // root mean square distance from the shape at rest moved rigidly [m]
 };
 
 // Per-node and per-cell results of a body, recovered for output.
@@ -279,6 +320,13 @@ class World {
   std::array<Vec3, 2> reaction(EffectId effect) const;
   double elastic_energy() const;  // [J], distortion plus compliance
   double kinetic_energy() const;  // [J]
+  Energies energies() const;
+  // Of everything that has mass, rigid bodies included: linear [kg m/s], and angular about the origin
+  // [kg m^2/s].
+  std::array<Vec3, 2> momentum() const;
+  // Refused where the nodes lie on one line or in one point, at rest or now: that has no rotation. Nodes of
+  // surfaces count by the area they stand for, those of other selections equally.
+  Result<Orientation> orientation(const Selection& where) const;
   // Largest |phi - target - C lambda| of all rows, relative to their measure.
   double constitutive_residual() const;
   WorldSize size() const;

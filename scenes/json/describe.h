@@ -410,6 +410,12 @@ void describe(Io& io, ProbeDef& p) {
 }
 
 template <class Io>
+void describe(Io& io, OrientationDef& o) {
+  io.required_text("name", o.name);
+  io.object("where", o.where);
+}
+
+template <class Io>
 void describe(Io& io, OutputDef& o) {
   io.integer("every", o.every, 1);
   io.flag("page", o.page, true);
@@ -461,6 +467,7 @@ void describe(Io& io, SceneDef& s) {
   io.vector("gravity", s.gravity, Vec3{});
   io.curve("gravity_amount", s.gravity_amount, CurveStart::zero, !(s.gravity == Vec3{}));
   io.list("probes", s.probes);
+  io.list("orientations", s.orientations);
   io.object("outputs", s.outputs);
   io.list("metrics", s.metrics);
 }

@@ -68,18 +68,24 @@ ISOCHOR_WORDS(ObstacleShape, 7, {ObstacleShape::plane, "plane"}, {ObstacleShape:
 ISOCHOR_WORDS(FrictionCoupling, 2, {FrictionCoupling::lagged, "lagged"},
               {FrictionCoupling::coupled, "coupled"});
 ISOCHOR_WORDS(InitialOverlap, 2, {InitialOverlap::report, "report"}, {InitialOverlap::resolve, "resolve"});
-ISOCHOR_WORDS(Quantity, 21, {Quantity::displacement, "displacement"},
-              {Quantity::cavity_pressure, "cavity_pressure"}, {Quantity::cavity_volume, "cavity_volume"},
-              {Quantity::cable_tension, "cable_tension"}, {Quantity::cable_length, "cable_length"},
-              {Quantity::rigid_x, "rigid_x"}, {Quantity::rigid_y, "rigid_y"}, {Quantity::rigid_z, "rigid_z"},
-              {Quantity::contact_force, "contact_force"}, {Quantity::contact_area, "contact_area"},
-              {Quantity::contact_pressure, "contact_pressure"}, {Quantity::contact_gap, "contact_gap"},
-              {Quantity::reaction_force, "reaction_force"}, {Quantity::reaction_moment, "reaction_moment"},
-              {Quantity::volume_error, "volume_error"},
-              {Quantity::constitutive_residual, "constitutive_residual"}, {Quantity::min_J, "min_J"},
-              {Quantity::max_J, "max_J"}, {Quantity::elastic_energy, "elastic_energy"},
-              {Quantity::kinetic_energy, "kinetic_energy"},
-              {Quantity::newton_iterations, "newton_iterations"});
+ISOCHOR_WORDS(
+    Quantity, 33, {Quantity::displacement, "displacement"}, {Quantity::cavity_pressure, "cavity_pressure"},
+    {Quantity::cavity_volume, "cavity_volume"}, {Quantity::cable_tension, "cable_tension"},
+    {Quantity::cable_length, "cable_length"}, {Quantity::rigid_x, "rigid_x"}, {Quantity::rigid_y, "rigid_y"},
+    {Quantity::rigid_z, "rigid_z"}, {Quantity::contact_force, "contact_force"},
+    {Quantity::contact_area, "contact_area"}, {Quantity::contact_pressure, "contact_pressure"},
+    {Quantity::contact_gap, "contact_gap"}, {Quantity::reaction_force, "reaction_force"},
+    {Quantity::reaction_moment, "reaction_moment"}, {Quantity::orientation_angle, "orientation_angle"},
+    {Quantity::orientation_axis, "orientation_axis"}, {Quantity::orientation_normal, "orientation_normal"},
+    {Quantity::volume_row_residual, "volume_row_residual"},
+    {Quantity::volume_row_residual, "volume_error"},  // its former name, which scenes may still have
+    {Quantity::volume_change, "volume_change"}, {Quantity::volume, "volume"},
+    {Quantity::constitutive_residual, "constitutive_residual"}, {Quantity::min_J, "min_J"},
+    {Quantity::max_J, "max_J"}, {Quantity::elastic_energy, "elastic_energy"},
+    {Quantity::kinetic_energy, "kinetic_energy"}, {Quantity::gravity_potential, "gravity_potential"},
+    {Quantity::load_potential, "load_potential"}, {Quantity::potential_energy, "potential_energy"},
+    {Quantity::total_energy, "total_energy"}, {Quantity::linear_momentum, "linear_momentum"},
+    {Quantity::angular_momentum, "angular_momentum"}, {Quantity::newton_iterations, "newton_iterations"});
 
 // "none" stands beside the spaces of the engine: no rows at all.
 enum class VolumeSpaceWord : std::uint8_t { node, element, body, ring, zone, none };

@@ -37,13 +37,27 @@ Json metric(const MetricValue& m) {
 void add_state(Json& j, const RunResult& r) {
   const StepRecord& end = r.records.back();
   j["time"] = end.time;
-  j["volume_error"] = end.volume_error;
+  j["volume_row_residual"] = end.volume_row_residual;
+  j["volume_change"] = end.total.volume_change();
   j["constitutive_residual"] = end.constitutive_residual;
   j["min_J"] = end.min_J;
   j["max_J"] = end.max_J;
   j["inverted_cells"] = end.inverted_cells;
   j["elastic_energy_J"] = end.elastic_energy;
   j["kinetic_energy_J"] = end.kinetic_energy;
+  j["gravity_potential_J"] = end.gravity_potential;
+  j["load_potential_J"] = end.load_potential;
+  j["potential_energy_J"] = end.potential_energy();
+  j["total_energy_J"] = end.total_energy();
+  j["linear_momentum_kg_m_s"] = list_of(end.momentum[0]);
+  j["angular_momentum_kg_m2_s"] = list_of(end.momentum[1]);
+  for (const VolumeMeasures& p : end.parts) {
+    j["volumes"][p.name] = {{"volume_m3", p.volume},
+                            {"rest_volume_m3", p.rest_volume},
+                            {"volume_change", p.volume_change()},
+                            {"min_J", p.min_J},
+                            {"max_J", p.max_J}};
+  }
   for (const char* key : {"probes", "cavities", "reactions"}) j[key] = Json::object();
   for (std::size_t p = 0; p < r.probes.size(); ++p) j["probes"][r.probes[p]] = list_of(end.probes[p]);
   for (std::size_t c = 0; c < r.cavities.size(); ++c) {

@@ -78,7 +78,7 @@ inline MetricDef at_time(MetricDef m, double time) {
   return m;
 }
 
-// The metrics that every robot has: how much its chamber swells, and the volume it must keep.
+// The metrics that every robot has: how much its chamber swells, and what its volume rows must meet.
 inline void add_robot_metrics(SceneDef& scene) {
   MetricDef swelling;
   swelling.name = "chamber volume";
@@ -91,11 +91,11 @@ inline void add_robot_metrics(SceneDef& scene) {
 
 inline void keep_volume(SceneDef& scene) {
   MetricDef m;
-  m.name = "volume error";
-  m.quantity = Quantity::volume_error;
+  m.name = "left by volume rows";
+  m.quantity = Quantity::volume_row_residual;
   m.reference = 0;
   m.tolerance = 1e-9;
-  m.source = "conservation of volume";
+  m.source = "rows are met";
   scene.metrics.push_back(m);
 }
 

@@ -340,7 +340,7 @@ std::vector<Section> present(std::span<const Measured> everything) {
             "ratio of a cell (below zero: turned over)."};
   Table t{"",
           {"formulation", "load / g", "status", "tip [m]", "iterations", "factorizations", "min J", "max J",
-           "volume error", "seconds"},
+           "left by volume rows", "seconds"},
           {}};
   Diagram d{"Newton iterations", "", "load / g", "iterations"};
   d.log_x = true;
@@ -351,7 +351,7 @@ std::vector<Section> present(std::span<const Measured> everything) {
       t.rows.push_back({f, text(m->knob("load")), m->status, m->good() && m->value ? text(*m->value, 4) : "",
                         std::to_string(m->iterations), std::to_string(m->factorizations),
                         text(m->number("min J")), text(m->number("max J")),
-                        text(m->number("volume error"), 2), text(m->seconds)});
+                        text(m->number("left by volume rows"), 2), text(m->seconds)});
       if (!m->good()) continue;
       line.x.push_back(m->knob("load"));
       line.y.push_back(m->iterations);

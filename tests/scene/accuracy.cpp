@@ -98,7 +98,7 @@ TEST_CASE("indicators cover metrics and probes, not residuals") {
   SceneDef scene = test::small_scene();
   MetricDef residual;
   residual.name = "volume error";
-  residual.quantity = Quantity::volume_error;
+  residual.quantity = Quantity::volume_row_residual;
   scene.metrics.push_back(residual);
   const RunResult r = run_scene(scene, {});
   const Accuracy a = estimate_accuracy(scene, r);

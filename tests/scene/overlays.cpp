@@ -300,11 +300,11 @@ TEST_CASE("the contact pressure of a run reaches its page") {
       numbers.begin(), numbers.end(), [](char c) { return c == '[' || c == ']' || c == ','; }, ' ');
   std::istringstream in(numbers);
   const std::vector<double> bounds{std::istream_iterator<double>(in), {}};
-  INFO(numbers);
-  REQUIRE(bounds.size() >= 15);
+  INFO(numbers);  // five a field: low, high, not finite, and the range without hot spots
+  REQUIRE(bounds.size() >= 25);
   double largest = 0;
   for (const double p : world.fields(built.value().bodies[0]).node_contact_pressure)
     largest = std::max(largest, p);
   REQUIRE(largest > 0);
-  CHECK(bounds[13] == Approx(largest).epsilon(1e-5));
+  CHECK(bounds[21] == Approx(largest).epsilon(1e-5));
 }

@@ -28,11 +28,37 @@ TEST_CASE("a run leaves frames, table, page and summary") {
     CHECK(fs::exists(scratch / "out" / file));
   }
   const Json j = Json::parse(test::slurp(scratch / "out" / "summary.json"));
-  for (const char* key :
-       {"status",     "reason",  "scene",    "steps",    "newton_iterations", "factorizations",
-        "wall_s",     "stage_s", "unknowns", "elements", "volume_error",      "constitutive_residual",
-        "min_J",      "max_J",   "probes",   "cavities", "reactions",         "metrics",
-        "state_hash", "version", "machine",  "threads",  "warnings"}) {
+  for (const char* key : {"status",
+                          "reason",
+                          "scene",
+                          "steps",
+                          "newton_iterations",
+                          "factorizations",
+                          "wall_s",
+                          "stage_s",
+                          "unknowns",
+                          "elements",
+                          "volume_row_residual",
+                          "constitutive_residual",
+                          "volume_change",
+                          "volumes",
+                          "gravity_potential_J",
+                          "load_potential_J",
+                          "potential_energy_J",
+                          "total_energy_J",
+                          "linear_momentum_kg_m_s",
+                          "angular_momentum_kg_m2_s",
+                          "min_J",
+                          "max_J",
+                          "probes",
+                          "cavities",
+                          "reactions",
+                          "metrics",
+                          "state_hash",
+                          "version",
+                          "machine",
+                          "threads",
+                          "warnings"}) {
     INFO(key);
     CHECK(j.contains(key));
   }

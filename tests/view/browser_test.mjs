@@ -2,7 +2,7 @@
 // Usage: node browser_test.mjs PATH_OF_isochor_demo_page      (exit code 77: skipped)
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
@@ -34,7 +34,7 @@ function make(variant) {
   return path;
 }
 
-const files = Object.fromEntries(['', 'broken', 'single', 'bare'].map((v) => [v || 'full', make(v)]));
+const files = Object.fromEntries(['', 'broken', 'single', 'bare', 'hot'].map((v) => [v || 'full', make(v)]));
 const browser = await Browser.launch();
 
 async function open(file, hash = '', window = {}) {
@@ -63,6 +63,35 @@ const PIXELS = `(() => {
     if (Math.max(r, g, b) - Math.min(r, g, b) < 14 && r > 120) ++gray;
   }
   return { covered, yellow, gray, hash, colors: colors.size, total: data.length / 4 };
+})()`;
+// Of the triangles of the slice that are on the picture: how many have the color of their value at their middle (light
+// and gloss set aside: the channels keep their proportions), and how many are black. The outline is drawn over some.
+const SLICE = `(() => {
+  const { stage } = window.isochorViewer;
+  stage.draw();
+  const { width, height } = stage.canvas;
+  const copy = new OffscreenCanvas(width, height).getContext('2d');
+  copy.drawImage(stage.canvas, 0, 0);
+  const { data } = copy.getImageData(0, 0, width, height);
+  const { body } = stage;
+  const { position, value } = body.sliceGeometry.attributes;
+  const table = body.uniforms.table.value.image.data;
+  const { x: low, y: high } = body.uniforms.range.value;
+  let checked = 0, good = 0, dark = 0;
+  for (let i = 0; i + 2 < value.count; i += 3) {
+    const middle = stage.camera.position.clone().set(0, 0, 0);
+    for (const k of [0, 1, 2]) middle.add({ x: position.getX(i + k) / 3, y: position.getY(i + k) / 3, z: position.getZ(i + k) / 3 });
+    const v = (value.getX(i) + value.getX(i + 1) + value.getX(i + 2)) / 3;
+    const entry = 4 * Math.round(255 * Math.min(1, Math.max(0, (v - low) / (high - low))));
+    middle.project(stage.camera);
+    const at = 4 * (Math.floor((1 - middle.y) / 2 * height) * width + Math.floor((middle.x + 1) / 2 * width));
+    const seen = [0, 1, 2].map((k) => data[at + k]), wanted = [0, 1, 2].map((k) => table[entry + k]);
+    const product = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    ++checked;
+    if (Math.max(...seen) < 45) ++dark;
+    else if (product(seen, wanted) > 0.985 * Math.sqrt(product(seen, seen) * product(wanted, wanted))) ++good;
+  }
+  return { checked, good, dark };
 })()`;
 const pixels = (page) => page.evaluate(PIXELS);
 const settle = (page) => page.evaluate('new Promise((done) => setTimeout(() => requestAnimationFrame(done), 60))');
@@ -205,9 +234,35 @@ const tests = {
     assert.ok(cut.yellow > 0.04 * cut.covered, `${cut.yellow} yellow of ${cut.covered} pixels after the cut`);
     await page.key('f');
     assert.notEqual((await pixels(page)).hash, cut.hash);
+    // Marked points of what is taken away go with it; those in the plane stay.
+    const marked = `[...document.querySelectorAll('.probe')].filter((l) => !l.hidden).length`;
+    assert.equal(await page.evaluate(marked), 2);
+    await page.key('z');
+    await pixels(page);
+    assert.equal(await page.evaluate(marked), 1, 'one of the ends of the finger is left');
+    await page.key('z');
+    await page.key('y');
+    await page.key('f');
     await page.key('y');
     assert.equal((await pixels(page)).hash, whole.hash);
     await finish(page);
+  },
+
+  async 'the first slice of a page has the colors of its values'() {
+    for (const [way, axis, field] of [['address', 'x', 'stress'], ['address', 'y', 'pressure'], ['address', 'z', 'J'], ['address', 'auto', 'stress'],
+      ['key', 'x', 'stress'], ['key', 'y', 'J'], ['key', 'z', 'pressure']]) {
+      const page = await open('full', `field=${field}&frame=10${way === 'address' ? `&cut=${axis}` : ''}`);
+      if (way === 'key') await page.key(axis);
+      for (const when of ['first', 'in another color']) {
+        const { checked, good, dark } = await page.evaluate(SLICE);
+        assert.ok(checked > 100, `cut=${axis}: ${checked} triangles of the slice`);
+        assert.ok(dark < 0.15 * checked, `cut=${axis} by ${way}, ${field}, ${when}: ${dark} of ${checked} points of the slice are black`);
+        assert.ok(good > 0.75 * checked, `cut=${axis} by ${way}, ${field}, ${when}: ${good} of ${checked} points of the slice have their color`);
+        await page.key('c'); // the next field, which the cut has not seen
+        if (await page.evaluate(`isochorViewer.state.field.categories.length > 0`)) break;
+      }
+      await finish(page);
+    }
   },
 
   async 'a section without values inside is filled'() {
@@ -264,8 +319,49 @@ const tests = {
     assert.ok((await pixels(single)).covered > 0);
     await finish(single);
     const bare = await open('bare', 'field=nonsense');
-    assert.match(await bare.evaluate(`document.querySelector('.notes').textContent`), /no field "nonsense"/);
+    assert.match(await bare.evaluate(`document.querySelector('.notes').textContent`), /no field "nonsense"; it has displacement, solid/);
     await finish(bare);
+  },
+
+  async 'what cannot be had is refused with what there is'() {
+    const out = join(folder, 'refused.png');
+    for (const [wrong, says] of [['field=nonsense', /no field "nonsense"; it has pressure, stress, J, region, displacement, solid/],
+      ['colour=red', /no option "colour"; there are .*field, .*theme/], ['frame=99', /frames 0 to 20/], ['frame=end', /frame wants first, last/],
+      ['view=above', /view wants iso, front/], ['cut=w', /cut wants x, y, z or auto/], ['cut=x:7', /place from 0 to 1/],
+      ['range=9,1', /range wants LOW,HIGH or frame/], ['zoom=0', /zoom wants a positive number/], ['theme=pink', /light or dark/], ['ghost=yes', /0 or 1/]]) {
+      const run = spawnSync(process.execPath, [join(viewer, 'shoot.mjs'), files.full, out, wrong], { encoding: 'utf8' });
+      assert.equal(run.status, 2, wrong);
+      assert.match(run.stderr, says);
+      assert.ok(!existsSync(out), `${wrong}: there is a picture`);
+    }
+    const page = await open('full', 'cut=w&colour=red');
+    assert.match(await page.evaluate(`document.querySelector('.notes').textContent`), /no option "colour".*|cut wants/);
+    await finish(page);
+  },
+
+  async 'one hot spot does not set the colors, and the legend says so'() {
+    const page = await open('hot', 'field=stress&frame=10');
+    const range = () => page.evaluate('isochorViewer.currentRange()');
+    const legend = () => page.evaluate(`document.querySelector('.legend').textContent`);
+    const usual = await range();
+    assert.ok(usual[1] < 2e5, `up to ${usual[1]} Pa beside a hot spot of 1e7 Pa`);
+    assert.match(await legend(), /1 % to 99 % of the points; all: .* to 10000/);
+    await page.evaluate(`[...document.querySelectorAll('.toggle')].find((t) => /Full range/.test(t.textContent)).querySelector('input').click()`);
+    assert.equal(Math.round((await range())[1]), 1e7);
+    assert.doesNotMatch(await legend(), /99 %/);
+    await finish(page);
+    const full = await open('hot', 'field=stress&frame=10&full=1');
+    assert.equal(Math.round((await full.evaluate('isochorViewer.currentRange()'))[1]), 1e7);
+    await finish(full);
+  },
+
+  async 'tables have the units of the charts'() {
+    const page = await open('full');
+    const table = await page.evaluate(`document.querySelector('.tables').textContent`);
+    assert.match(table, /Largest pressure40 kPa/);
+    assert.match(table, /Volume at rest23.5 mL \(at most 41.125 mL\)/);
+    assert.match(table, /Least pressure0 kPa/, 'a small number keeps the unit of its chart');
+    await finish(page);
   },
 
   async 'nothing at all is the lowest color'() {

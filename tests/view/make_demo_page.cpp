@@ -3,7 +3,7 @@
 // it. ACROSS and ALONG are cells over an end and along the straight part (10 and 16): the surface has
 // 8 ACROSS (3 ACROSS + 2 ALONG) triangles, the body 4.5 times as many tets.
 //
-//   make_demo_page OUT.html [full|broken|single|bare [ACROSS ALONG FRAMES]]
+//   make_demo_page OUT.html [full|broken|single|bare|hot [ACROSS ALONG FRAMES]]
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -179,6 +179,9 @@ isochor::PageReport report(int frames) {
   char reach[32];
   std::snprintf(reach, sizeof reach, "%.1f mm", 1e3 * norm(moved(tip, 1) - tip));
   out.summary = {{"Tip displacement at full load", reach}, {"Frames", std::to_string(frames)}};
+  out.summary.push_back({"Largest pressure", "#0", {40e3}, "Pa"});
+  out.summary.push_back({"Least pressure", "#0", {0}, "Pa"});
+  out.summary.push_back({"Volume at rest", "#0 (at most #1)", {2.35e-5, 1.75 * 2.35e-5}, "m³"});
   return out;
 }
 
@@ -186,7 +189,8 @@ isochor::PageReport report(int frames) {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fprintf(stderr, "usage: make_demo_page OUT.html [full|broken|single|bare [ACROSS ALONG FRAMES]]\n");
+    std::fprintf(stderr,
+                 "usage: make_demo_page OUT.html [full|broken|single|bare|hot [ACROSS ALONG FRAMES]]\n");
     return 2;
   }
   const std::string_view variant = argc > 2 ? argv[2] : "full";
@@ -197,7 +201,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "make_demo_page: ACROSS is even and at least 2, ALONG and FRAMES are at least 1\n");
     return 2;
   }
-  const bool bare = variant == "bare", broken = variant == "broken";
+  const bool bare = variant == "bare", broken = variant == "broken", hot = variant == "hot";
 
   isochor::PageScene scene;
   const Mesh mesh = capsule(across, along);
@@ -245,6 +249,8 @@ int main(int argc, char** argv) {
       }
       if (broken && i == 5) frame.positions[7].x = std::numeric_limits<double>::quiet_NaN();
     }
+    // A single point, as a sharp edge has it.
+    if (hot) frame.fields[1][frame.fields[1].size() / 2] = load * 1e7;
     if (auto ok = recorder.value().append(frame); !ok) {
       std::fprintf(stderr, "%s\n", ok.error().c_str());
       return 1;

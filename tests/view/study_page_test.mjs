@@ -74,6 +74,11 @@ try {
   assert.equal(await count(page, '.u-wrap canvas'), 1);
   assert.equal(await count(page, 'table'), await count(page, '.u-legend'));
   assert.ok((await page.picture()).length > 5000);
+  await page.close?.();
+  page = await open(steps, 'section=1&figure=99&color=red');
+  const problems = (await page.evaluate('window.isochorProblems')).join(' ');
+  assert.match(problems, /figure=99: figure wants a number from 1 to \d+ in section 1/);
+  assert.match(problems, /no option "color"; there are section, figure, tables/);
 } catch (error) {
   failed = error;
 } finally {

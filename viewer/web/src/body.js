@@ -339,9 +339,10 @@ export class Body {
     this.section.visible = plane !== null;
     const changed = shows.cut !== (plane !== null);
     shows.cut = plane !== null;
+    // Made before the materials are told what they show, or the first slice would not know.
+    if (plane && !this.capMaterials) this.buildSection();
     if (changed) this.refresh();
     if (!plane) return;
-    if (!this.capMaterials) this.buildSection();
     this.uniforms.cut.value.set(...plane);
     const n = new THREE.Vector3(...plane.slice(0, 3));
     const origin = n.clone().multiplyScalar(-plane[3]);

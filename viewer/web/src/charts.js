@@ -185,7 +185,28 @@ function wantedSections(sections) {
   return [section];
 }
 
+/** One sentence for each option that is unknown or asks for what is not there. */
+function problemsOf(sections) {
+  const options = new URLSearchParams(window.location.hash.slice(1));
+  const wanted = Number(options.get('section'));
+  const section = sections[wanted - 1];
+  const figures = section ? section.diagrams.length + section.bars.length : 0;
+  const upTo = (most) => (text) => /^\d+$/.test(text) && Number(text) >= 1 && Number(text) <= most;
+  const known = {
+    section: [upTo(sections.length), `a number from 1 to ${sections.length}`],
+    figure: [upTo(figures), section ? `a number from 1 to ${figures} in section ${wanted}` : 'a section beside it'],
+    tables: [(text) => text === '0' || text === '1', '0 or 1'],
+    shot: [() => true, ''],
+  };
+  return [...options].flatMap(([key, value]) => {
+    if (!(key in known)) return [`There is no option "${key}"; there are ${Object.keys(known).join(', ')}.`];
+    return known[key][0](value) ? [] : [`${key}=${value}: ${key} wants ${known[key][1]}.`];
+  });
+}
+
 function build(page) {
+  window.isochorProblems = problemsOf(page.sections);
+  page.notes = [...window.isochorProblems, ...page.notes];
   const only = wantedSections(page.sections);
   const diagrams = [];
   const make = (d) => {

@@ -69,13 +69,15 @@ export class Controls {
     });
     this.bounds = [number('Lowest color', 0), number('Highest color', 1)];
     this.boundsUnit = el('span', { class: 'unit' });
+    this.full = toggle('Full range', '', state.full, (on) => { state.full = on; viewer.showField(); this.showRange(); });
+    this.full.node.title = 'Off: colors span the values from 1 % to 99 % of the points, so that no hot spot sets them';
     this.rangeBox = el('div', { class: 'row bounds' }, this.bounds[0], el('span', {}, 'to'), this.bounds[1], this.boundsUnit);
 
     this.edges = toggle('Mesh edges', 'E', state.edges, (on) => { state.edges = on; viewer.showDisplay(); });
     this.ghost = toggle('Rest shape', 'G', state.ghost, (on) => { state.ghost = on; viewer.showDisplay(); });
 
     this.cutChoice = choice('Cut plane', [[null, 'Off'], ['x', 'x'], ['y', 'y'], ['z', 'z']], state.cut.axis, (axis) => this.setCut(axis));
-    this.cutSlider = el('input', { type: 'range', min: 0, max: 1, step: 0.002, value: state.cut.at, 'aria-label': 'Position of the cut', oninput: () => { state.cut.at = Number(this.cutSlider.value); this.cutChanged(); } });
+    this.cutSlider = el('input', { type: 'range', min: 0, max: 1, step: 0.002, value: state.cut.at, 'aria-label': 'Position of the cut', oninput: () => { state.cut.at = viewer.cutPlaces[state.cut.axis] = Number(this.cutSlider.value); this.cutChanged(); } });
     this.cutText = el('output', { class: 'counter' });
     this.cutFlip = el('button', { type: 'button', class: 'quiet', title: 'Keep the other half (F)', onclick: () => { state.cut.flip = !state.cut.flip; this.cutChanged(); } }, 'Flip');
     this.cutBox = el('div', { class: 'row' }, this.cutSlider, this.cutText, this.cutFlip);
@@ -88,7 +90,7 @@ export class Controls {
         .flatMap(([key, what]) => [el('dt', {}, el('kbd', {}, key)), el('dd', {}, what)])));
     const group = (title, ...nodes) => el('fieldset', {}, el('legend', {}, title), ...nodes);
     page.controls.append(
-      group('Color', select, this.rangeChoice.node, this.rangeBox),
+      group('Color', select, this.rangeChoice.node, this.rangeBox, this.full.node),
       group('Show', this.edges.node, this.ghost.node),
       group('Cut', this.cutChoice.node, this.cutBox),
       group('Camera', views),
@@ -105,6 +107,7 @@ export class Controls {
     const ordered = range !== null && viewer.state.field.categories.length === 0;
     this.rangeBox.hidden = !ordered;
     this.rangeChoice.node.hidden = !ordered;
+    this.full.node.hidden = !ordered;
     if (!ordered) return;
     // Plain numbers in the unit of the run: they are meant to be edited.
     // To a thousandth of the range, however far from zero it lies (J is always near one).
@@ -117,6 +120,7 @@ export class Controls {
     const { cut } = this.viewer.state;
     cut.axis = cut.axis === axis ? null : axis;
     cut.flip = null;
+    if (cut.axis) cut.at = this.cutSlider.value = this.viewer.cutPlaces[cut.axis];
     this.viewer.openCut();
     this.cutChoice.set(cut.axis);
     this.cutChanged();

@@ -203,23 +203,45 @@ export class RunData {
     return list;
   }
 
-  /** Lowest and highest finite value of a field in one frame; null when there is none. */
-  frameRange(field, index) {
+  /**
+   * Range of the finite values of a field in one frame: all of them, or those between the first and the last
+   * hundredth, which a hot spot does not stretch. Null when there is none.
+   */
+  frameRange(field, index, full = true) {
     const info = this.head.frames[index];
     if (field.kind === 'displacement') return [0, info.displacement];
     const range = info.ranges[field.index];
-    return range[0] === null ? null : [range[0], range[1]];
+    if (range[0] === null) return null;
+    // Where the hundredths leave nothing, all of it is shown.
+    return full || !(range[4] > range[3]) ? [range[0], range[1]] : [range[3], range[4]];
   }
 
   /** The same over the whole run. */
-  runRange(field) {
-    if (this.ranges.has(field.name)) return this.ranges.get(field.name);
+  runRange(field, full = true) {
+    const key = `${full} ${field.name}`;
+    if (this.ranges.has(key)) return this.ranges.get(key);
     let out = null;
     for (let i = 0; i < this.frameCount; ++i) {
-      const range = this.frameRange(field, i);
+      const range = this.frameRange(field, i, full);
       if (range) out = out ? [Math.min(out[0], range[0]), Math.max(out[1], range[1])] : range;
     }
-    this.ranges.set(field.name, out);
+    this.ranges.set(key, out);
     return out;
+  }
+
+  /** Where a cut across this axis opens, as a part of the extent of the run. */
+  cutPosition(axis) {
+    const { low, high } = this.head.box;
+    const { section } = this.head;
+    if (!section || !(high[axis] > low[axis])) return 0.5;
+    return Math.min(1, Math.max(0, (section.at[axis] - low[axis]) / (high[axis] - low[axis])));
+  }
+
+  /** The axis to cut across: the one the run names, or the one along which everything is shortest. */
+  cutAxis() {
+    const { low, high } = this.head.box;
+    if (this.head.section) return this.head.section.axis;
+    const extent = low.map((v, i) => high[i] - v);
+    return 'xyz'[extent.indexOf(Math.min(...extent))];
   }
 }

@@ -1,5 +1,7 @@
 // The skeleton of the page and its tables.
 import { el } from './dom.js';
+import { significant, unitScale } from './numbers.js';
+import { chartScale } from './plots.js';
 
 const ICONS = {
   play: 'M8 5v14l11-7z', pause: 'M7 5h4v14H7zm6 0h4v14h-4z', back: 'M6 5h2v14H6zm3 7l9-7v14z', next: 'M16 5h2v14h-2zM6 5l9 7-9 7z',
@@ -23,10 +25,17 @@ const svgElement = (className) => {
   return svg;
 };
 
-function table(caption, rows) {
+/** Numbers of a table entry in the unit that the charts have. */
+function entryText([, value, numbers, unit], scaleOf) {
+  if (!numbers) return value;
+  const scale = scaleOf(unit, Math.max(...numbers.map(Math.abs)));
+  return numbers.reduce((text, v, k) => text.replace(`#${k}`, `${significant(v * scale.factor, 5)} ${scale.unit}`.trim()), value);
+}
+
+function table(caption, rows, scaleOf) {
   if (rows.length === 0) return '';
   return el('section', { class: 'card' }, el('h2', {}, caption), el('table', {}, el('tbody', {},
-    ...rows.map(([key, value]) => el('tr', {}, el('th', { scope: 'row' }, key), el('td', {}, value))))));
+    ...rows.map((row) => el('tr', {}, el('th', { scope: 'row' }, row[0]), el('td', {}, entryText(row, scaleOf)))))));
 }
 
 export function buildPage(head) {
@@ -46,11 +55,12 @@ export function buildPage(head) {
     page.theme);
   const counts = `${head.vertices.toLocaleString('en-US')} vertices, ${head.triangles.toLocaleString('en-US')} triangles, `
     + `${head.frames.length.toLocaleString('en-US')} ${head.frames.length === 1 ? 'frame' : 'frames'}`;
+  const scaleOf = (unit, magnitude) => chartScale(head.series, unit) ?? unitScale(magnitude, unit);
   page.root = el('div', { class: 'page' }, header, page.notes,
     el('main', {},
       el('div', { class: 'viewer' }, el('div', { class: 'card view' }, page.stage, page.transport), page.controls),
       page.plots,
-      el('div', { class: 'tables' }, table('Summary', head.summary), table('Run', head.run))),
+      el('div', { class: 'tables' }, table('Summary', head.summary, scaleOf), table('Run', head.run, scaleOf))),
     el('footer', {}, el('span', {}, head.footer || 'Isochor'), el('span', {}, counts)));
   return page;
 }

@@ -1,9 +1,9 @@
 // The color legend: label, unit, round ticks; swatches for categories.
 import { categoryColor, cssColor, gradient, partColor } from './colors.js';
-import { fixed, niceTicks, unitScale } from './numbers.js';
+import { fixed, niceTicks, significant, unitScale } from './numbers.js';
 import { el } from './dom.js';
 
-export function drawLegend(host, { field, range, parts, invalid, perFrame }) {
+export function drawLegend(host, { field, range, beyond, parts, invalid, perFrame }) {
   host.replaceChildren();
   host.hidden = false;
   if (field.kind === 'solid' || field.categories.length > 0) {
@@ -33,6 +33,11 @@ export function drawLegend(host, { field, range, parts, invalid, perFrame }) {
     bar.append(el('span', { class: 'tick', style: `bottom:${(100 * at).toFixed(2)}%` }, fixed(tick, decimals)));
   }
   host.append(bar);
+  if (beyond) {
+    const number = (v) => significant(v * scale.factor, 3);
+    host.append(el('div', { class: 'legend-note' },
+      `colors span 1 % to 99 % of the points; all: ${number(beyond[0])} to ${number(beyond[1])}`));
+  }
   if (perFrame) host.append(el('div', { class: 'legend-note' }, 'range of this frame'));
   if (invalid > 0) {
     host.append(el('div', { class: 'legend-note' }, el('i', { class: 'gray' }), `${invalid} not finite`));

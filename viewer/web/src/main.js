@@ -20,6 +20,7 @@ class Viewer {
     this.state = {
       frame: run.frameCount > 0 ? frameNumber(options.frame, run.head.frames) : -1,
       field: wanted ?? this.fields[0],
+      full: options.full, // colors span all values, not those between the first and the last hundredth
       rangeMode: options.range ? 'custom' : options.perFrame ? 'frame' : 'run',
       custom: options.range,
       ghost: options.ghost,
@@ -28,8 +29,21 @@ class Viewer {
       playing: false,
       speed: 1,
     };
-    this.notes = [...run.head.notes];
-    if (options.field && !wanted) this.notes.push(`This run has no field "${options.field}"; shown is "${this.state.field.name}".`);
+    const { cut } = this.state;
+    if (cut.axis === 'auto') cut.axis = run.cutAxis();
+    this.cutPlaces = Object.fromEntries(['x', 'y', 'z'].map((axis, i) => [axis, run.cutPosition(i)]));
+    if (cut.axis && cut.at !== null) this.cutPlaces[cut.axis] = cut.at;
+    if (cut.axis) cut.at = this.cutPlaces[cut.axis];
+    // What was asked for and is not there, for whoever takes pictures.
+    this.problems = [...options.problems];
+    if (options.field && !wanted) {
+      this.problems.push(`This run has no field "${options.field}"; it has ${this.fields.map((f) => f.name).join(', ')}.`);
+    }
+    const frames = run.frameCount;
+    if (/^\d+$/.test(options.frame) && Number(options.frame) >= frames) {
+      this.problems.push(`frame=${options.frame}: this run has frames 0 to ${frames - 1}.`);
+    }
+    this.notes = [...this.problems, ...run.head.notes];
   }
 
   async start() {
@@ -132,7 +146,8 @@ class Viewer {
     const { field } = state;
     if (field.kind === 'solid' || state.frame < 0) return null;
     if (state.rangeMode === 'custom' && state.custom) return state.custom;
-    let range = state.rangeMode === 'frame' ? run.frameRange(field, state.frame) : run.runRange(field);
+    const of = (full) => (state.rangeMode === 'frame' ? run.frameRange(field, state.frame, full) : run.runRange(field, full));
+    let range = of(state.full);
     if (!range) return null;
     if (field.diverging) {
       // Both sides get the same length of color, or the neutral color would not mean the center.
@@ -147,6 +162,14 @@ class Viewer {
     return range;
   }
 
+  /** All that the values span, where the colors do not. */
+  rangeBeyond(range) {
+    const { run, state } = this;
+    if (!range || state.full || state.rangeMode === 'custom' || state.field.categories.length > 0) return null;
+    const all = state.rangeMode === 'frame' ? run.frameRange(state.field, state.frame) : run.runRange(state.field);
+    return all && (all[0] < range[0] || all[1] > range[1]) ? all : null;
+  }
+
   showField() {
     const { run, state, frame } = this;
     const { field } = state;
@@ -158,11 +181,11 @@ class Viewer {
     }
     if (this.options.legend) {
       const legend = {
-        field, range, parts: run.head.parts, perFrame: state.rangeMode === 'frame',
+        field, range, beyond: this.rangeBeyond(range), parts: run.head.parts, perFrame: state.rangeMode === 'frame',
         invalid: field.kind === 'given' && frame ? frame.info.ranges[field.index][2] : 0,
       };
       // Made anew only when it says something else: the browser paints it over the picture.
-      const says = JSON.stringify([field.name, range, legend.perFrame, legend.invalid]);
+      const says = JSON.stringify([field.name, range, legend.beyond, legend.perFrame, legend.invalid]);
       if (this.legendSays !== says) drawLegend(this.page.legend, legend);
       this.legendSays = says;
     }
@@ -175,7 +198,9 @@ class Viewer {
     if (!stage) return;
     stage.body.setGhost(state.ghost);
     stage.body.setEdges(state.edges);
-    stage.body.setCut(this.cutPlane());
+    const plane = this.cutPlane();
+    stage.body.setCut(plane);
+    stage.overlays.setCut(plane);
     stage.invalidate();
   }
 
@@ -206,7 +231,10 @@ class Viewer {
     const axis = 'xyz'.indexOf(cut.axis);
     const { low, high } = run.head.box;
     const scale = unitScale(Math.max(...low.map((v, i) => high[i] - v)), 'm');
-    return `${cut.axis} = ${significant((low[axis] + cut.at * (high[axis] - low[axis])) * scale.factor, 3)} ${scale.unit}`;
+    // To a thousandth of the extent: the middle of a symmetric body is zero and not a rounding error.
+    const step = (high[axis] - low[axis]) / 1000 || 1;
+    const place = Math.round((low[axis] + cut.at * (high[axis] - low[axis])) / step) * step;
+    return `${cut.axis} = ${significant(place * scale.factor, 3)} ${scale.unit}`;
   }
 
   play(on) {
@@ -257,6 +285,7 @@ async function open() {
     window.isochorError = String(error.message);
     console.error(error);
   }
+  window.isochorProblems = window.isochorViewer?.problems ?? []; // options that cannot be had: no picture of these
   window.isochorReady = true;
   window.isochorOpened = performance.now(); // ms since the browser set out for this page: the first picture is shown
   window.isochorViewer?.run.unpackAhead();

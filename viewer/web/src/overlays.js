@@ -133,8 +133,28 @@ export class Overlays {
       for (const object of objects) object.visible = finite.length >= 6;
       if (finite.length >= 6) fillLine(geometry, segments(finite));
     });
-    this.contacts.set(frame.contacts);
-    this.probes.set(frame.probes);
+    this.showPoints();
+  }
+
+  /** Points of what a cut takes away go with it. plane: as Body.setCut() takes it. */
+  setCut(plane) {
+    this.plane = plane;
+    if (this.frame) this.showPoints();
+  }
+
+  /** Points a little beyond the plane stay: those in a plane of symmetry, for one. */
+  isKept(x, y, z) {
+    const { plane } = this;
+    return !plane || plane[0] * x + plane[1] * y + plane[2] * z + plane[3] <= 0.02;
+  }
+
+  showPoints() {
+    const kept = (points) => points.map((v, i) => {
+      const at = i - (i % 3);
+      return this.isKept(points[at], points[at + 1], points[at + 2]) ? v : NaN;
+    });
+    this.contacts.set(kept(this.frame.contacts));
+    this.probes.set(kept(this.frame.probes));
   }
 
   resize(pixelRatio) {
@@ -146,7 +166,7 @@ export class Overlays {
     const p = new THREE.Vector3();
     this.labels.forEach((label, index) => {
       p.fromArray(this.frame?.probes ?? [], 3 * index);
-      const finite = [p.x, p.y, p.z].every(Number.isFinite);
+      const finite = [p.x, p.y, p.z].every(Number.isFinite) && this.isKept(p.x, p.y, p.z);
       if (finite) p.project(camera);
       label.hidden = !finite || Math.abs(p.z) > 1;
       const place = `translate(${((p.x + 1) / 2) * width + 10}px, ${((1 - p.y) / 2) * height - 22}px)`;

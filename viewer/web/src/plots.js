@@ -25,6 +25,19 @@ function charts(series) {
   return out;
 }
 
+/** The scale of a unit in the values of a chart. */
+function scaleOfValues(series, unit) {
+  const values = series.filter((s) => s.unit === unit).flatMap((s) => s.y).filter(Number.isFinite);
+  return { values, ...unitScale(values.reduce((m, v) => Math.max(m, Math.abs(v)), 0), unit) };
+}
+
+/** How the first chart that has this unit shows it; null where none has. */
+export function chartScale(series, unit) {
+  const chart = charts(series).find((c) => c.units.includes(unit) && !c.series.every((s) => s.log));
+  const scale = chart && scaleOfValues(chart.series, unit);
+  return scale && scale.values.some((v) => v !== 0) ? scale : null;
+}
+
 /** Lines of a logarithmic axis at powers of ten: those between would be a gray band. */
 const decades = (lines) => ({
   ...lines,
@@ -97,11 +110,11 @@ export class Plots {
     const { theme } = this;
     const log = chart.series.every((s) => s.log);
     const scaleOf = new Map(chart.units.map((unit, i) => {
-      const values = chart.series.filter((s) => s.unit === unit).flatMap((s) => s.y).filter(Number.isFinite);
+      const { values, ...shown } = scaleOfValues(chart.series, unit);
       const magnitude = values.reduce((m, v) => Math.max(m, Math.abs(v)), 0);
       // Rounding noise around zero is read as zero, except where a logarithmic axis is about just that.
       const settle = log ? (v) => v : (v) => (Math.abs(v) < 1e-12 * magnitude * scale.factor ? 0 : v);
-      const scale = log ? { factor: 1, unit } : unitScale(magnitude, unit);
+      const scale = log ? { factor: 1, unit } : shown;
       return [unit, { key: `y${i}`, values, settle, ...scale }];
     }));
     const tables = chart.series.map((s) => {

@@ -228,7 +228,8 @@ export class Stage {
     const projection = new THREE.Matrix4();
     const width = Math.max(1, this.host.clientWidth);
     const legend = this.host.querySelector('.legend');
-    const reserved = legend && !legend.hidden ? Math.min(0.3, 105 / width) : 0;
+    // As wide as the legend is now, with some air to its left and what it keeps to its right.
+    const reserved = legend && !legend.hidden ? Math.min(0.4, (width - legend.offsetLeft + 14) / width) : 0;
     for (let pass = 0; pass < 4; ++pass) {
       camera.position.copy(target).addScaledVector(this.direction, distance);
       camera.lookAt(target);
