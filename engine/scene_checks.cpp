@@ -57,7 +57,7 @@ const BodyData& body_of(const SceneFacts& facts, Index node) {
 }
 
 std::string shown(const Eigen::Vector3d& v) {
-  return "(" + number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()) + ")";
+  return std::string("(") + number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()) + ")";
 }
 
 // The directions of a space: axes where they span it, else vectors. Columns are orthonormal.

@@ -91,7 +91,7 @@ Format by_xml(std::string_view head) {
   if (has(head, "<dolfin")) return {"a DOLFIN (FEniCS) mesh", Kind::meshio};
   if (has(head, "<COLLADA")) return {"a COLLADA surface", Kind::surface};
   if (has(head, "<X3D")) return {"an X3D surface", Kind::surface};
-  if (has(head, "<VTKFile") && !has(head, "\"UnstructuredGrid\""))
+  if (has(head, "<VTKFile") && !has(head, "UnstructuredGrid"))
     return {"a VTK file of another kind than UnstructuredGrid", Kind::vtk_other};
   if (has(head, "<VTKFile")) return {"", Kind::surface};
   return {"an XML file without <VTKFile>", Kind::meshio};
@@ -111,6 +111,8 @@ Format by_text(std::string_view head, std::string_view first, std::string_view e
     return {"a Nastran deck", Kind::gmsh};
   if (word == "*KEYWORD" || (extension == ".k" && first.starts_with("*")))
     return {"an LS-DYNA deck", Kind::meshio};
+  if (extension == ".inp" && first.find_first_not_of("0123456789") == first.npos)
+    return {"an AVS UCD file", Kind::meshio};
   if (has(text, "*NODE") || has(text, "*HEADING") || has(text, "*PART,") || extension == ".inp")
     return {"an Abaqus or CalculiX deck", Kind::meshio};
   if (has(text, "/PREP7") || has(text, "NBLOCK") || extension == ".cdb")

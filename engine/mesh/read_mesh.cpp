@@ -73,6 +73,7 @@ RawMesh read_any(const std::string& file) {
                     word == "$NOD" || word.starts_with("$MeshFormat");
   const bool medit = word == "MeshVersionFormatted";
   const bool tetgen = extension == ".node" || extension == ".ele" || extension == ".face";
+  if (!gmsh && is_abaqus(content)) return read_abaqus(content, file);
   if (!gmsh && !medit && !tetgen) {
     if (const auto what = foreign_format(content, extension, file); !what.empty())
       throw ReadFailure{file + ": " + what};
@@ -88,7 +89,7 @@ RawMesh read_any(const std::string& file) {
   if (extension == ".mesh" || extension == ".meshb") return read_medit(content, file);
   throw ReadFailure{join(file, ": the file begins with ", quoted(first_word(content)),
                          ", which is no known mesh format; read are Gmsh .msh (2.2, 4.1), VTK .vtk and .vtu, "
-                         "TetGen .node/.ele and Medit .mesh: convert it with 'meshio convert'")};
+                         "TetGen .node/.ele, Medit .mesh and Abaqus .inp: convert it with 'meshio convert'")};
 }
 
 }  // namespace

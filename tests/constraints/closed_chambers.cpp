@@ -20,7 +20,7 @@ using Voxel = std::array<int, 3>;
 std::set<Voxel> random_voids(std::mt19937& random) {
   std::set<Voxel> voids;
   const auto inside = [&] { return 1 + static_cast<int>(random() % (kSide - 2)); };
-  for (unsigned k = 3 + random() % 5; k > 0; --k) voids.insert({inside(), inside(), inside()});
+  for (auto k = 3 + random() % 5; k > 0; --k) voids.insert({inside(), inside(), inside()});
   voids.insert({2, 2, 3});
   voids.insert({3, 3, 3});
   voids.erase({2, 3, 3});

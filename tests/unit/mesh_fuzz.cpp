@@ -93,7 +93,11 @@ TEST_CASE("mesh: damaged files with other sections", "[mesh][fuzz]") {
   const std::string two =
       "//+\n" + replaced(gmsh22_text(), "2 2 2 5 1 2 3 4", "2 2 2 0 8 2 3 4") + "Show \"*\";\n";
   fuzz(dir, "a.msh", two);
-  fuzz(dir, "b.inp", "*HEADING\n*NODE\n1, 0, 0, 0\n*ELEMENT, TYPE=C3D4\n1, 1, 2, 3, 4\n");
+  fuzz(dir, "b.inp",
+       "*HEADING\n*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*ELEMENT, TYPE=C3D4, ELSET=e\n1, 1, "
+       "2, 3, 4\n"
+       "*NSET, NSET=a\n1, 2, a\n*ELSET, ELSET=f, GENERATE\n1, 1, 1\n*SURFACE, NAME=s\nf, S1\n*SOLID SECTION, "
+       "ELSET=f\n");
   fuzz(dir, "c.feb", "<?xml version=\"1.0\"?>\n<febio_spec version=\"3.0\">\n<Mesh/></febio_spec>\n");
 }
 

@@ -84,7 +84,7 @@ TEST_CASE("mesh: lines outside of sections are skipped with a note", "[mesh]") {
       const auto places = gaps(content);
       int added = 0;
       for (std::size_t p = places.size(); p-- > 0;) {
-        for (unsigned k = random() % 3; k > 0; --k) {
+        for (auto k = random() % 3; k > 0; --k) {
           const std::string& line = lines[random() % lines.size()];
           more.insert(places[p], line);
           added += line != "\n";
@@ -148,8 +148,7 @@ TEST_CASE("mesh: files of other programs are named with a remedy", "[mesh]") {
       {"i.obj", "# made by x\nv 0 0 0\nv 1 0 0\nf 1 2 3\n", {"OBJ", "surface"}},
       {"j.ply", "ply\nformat ascii 1.0\n", {"PLY", "surface"}},
       {"k.off", "OFF\n3 1 0\n", {"OFF", "surface"}},
-      {"l.inp", "*HEADING\n a\n*NODE\n1, 0, 0, 0\n", {"Abaqus", "meshio"}},
-      {"m.inp", "** a comment\n*Part, name=a\n*Node\n1, 0., 0., 0.\n", {"Abaqus"}},
+      {"l.inp", "8 1 0 0 0\n1 0 0 0\n", {"AVS UCD", "meshio"}},
       {"n.med", "\x89HDF\r\n\x1a\n", {"MED", "gmsh"}},
       {"o.h5", "\x89HDF\r\n\x1a\n", {"HDF5", "meshio"}},
       {"p.step", "ISO-10303-21;\nHEADER;\n", {"STEP", "gmsh"}},
