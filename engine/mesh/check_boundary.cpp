@@ -281,7 +281,8 @@ void check_surface(const Mesh& mesh, const MeshSurface& surface, const std::vect
   std::sort(sorted.begin(), sorted.end());
   const auto repeats = sorted.end() - std::unique(sorted.begin(), sorted.end());
   if (repeats > 0) {
-    add(Severity::warning, "repeated-face", repeats, join("has ", repeats, " faces twice; each counts once"));
+    add(Severity::warning, "repeated-face", repeats,
+        join("lists ", repeats, repeats == 1 ? " face" : " faces", " more than once; each counts once"));
   }
   const std::int64_t loops = count_loops(mesh, sorted_edges(given));
   if (loops > 0) {

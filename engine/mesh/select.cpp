@@ -183,7 +183,7 @@ bool Selector::fits(const Face& face) const {
   if (near_ && !near_->has(face.center, tolerance_ + 0.1 * face.size)) return false;
   if (!wanted_.facing) return true;
   const Vec3& d = wanted_.facing->direction;
-  return dot(face.normal, d) >= std::cos(wanted_.facing->angle) * length(d) * (1 - 1e-12);
+  return dot(face.normal, d) >= (std::cos(wanted_.facing->angle) - 1e-12) * length(d);
 }
 
 std::vector<Face> Selector::boundary() const {

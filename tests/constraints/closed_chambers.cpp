@@ -14,6 +14,10 @@ namespace {
 constexpr int kSide = 6;
 constexpr double kCell = 0.01;
 
+std::size_t index(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
 using Voxel = std::array<int, 3>;
 
 // Voxels inside the block, none at its border: some at random, and one that touches another in an edge only.
@@ -39,13 +43,13 @@ Mesh block_without(const std::set<Voxel>& voids, CellType type) {
     Vec3 middle{};
     const std::size_t corners = per == 8 ? 8 : 4;
     for (std::size_t k = 0; k < corners; ++k)
-      middle += (1.0 / double(corners) / kCell) * whole.nodes[at(whole.cells[c + k])];
+      middle += (1.0 / double(corners) / kCell) * whole.nodes[index(whole.cells[c + k])];
     if (voids.count({int(middle.x), int(middle.y), int(middle.z)}) > 0) continue;
     for (std::size_t k = 0; k < per; ++k) {
-      Index& p = place[at(whole.cells[c + k])];
+      Index& p = place[index(whole.cells[c + k])];
       if (p < 0) {
         p = mesh.node_count();
-        mesh.nodes.push_back(whole.nodes[at(whole.cells[c + k])]);
+        mesh.nodes.push_back(whole.nodes[index(whole.cells[c + k])]);
       }
       mesh.cells.push_back(p);
     }
