@@ -56,7 +56,6 @@ class RimPool final : public StencilPool {
   std::string_view name() const override { return name_; }
   bool has_energy() const override { return false; }
   int functions() const override { return 1; }
-  bool has_hessian() const override { return false; }
   bool has_lag() const override { return true; }
   bool couples() const override { return couples_; }
 
@@ -79,6 +78,9 @@ class RimPool final : public StencilPool {
         slots.jacobian[first + a] = c[a];
         slots.gradient[first + a] = sigma * c[a];
       }
+      // Linear in the positions; the places are for what the lag adds.
+      if (request.want == Want::hessian)
+        std::fill_n(slots.hessian.data() + hessian_offset()[at(e)], n * (n + 1) / 2, Mat3{});
     }
   }
 

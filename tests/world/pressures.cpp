@@ -114,10 +114,15 @@ TEST_CASE("pressure on an open patch turns with it") {
     std::vector<Vec3> back;
     for (const Vec3& x : other.world.positions(other.body)) back.push_back({x.y, x.z, x.x});
     CHECK(largest_difference(one.world.positions(one.body), back) < 1e-9);
+    // It has curled so far that most of the load no longer points where it did, and is still pressure times
+    // the area of the rim.
     const Vec3 tip = displacement_at(one.world, one.body, {0.005, 0.005, 0.08});
     CHECK(tip.x > 0.02);
-    CHECK(one.reaction().x < 0);
-    CHECK(std::abs(one.reaction().z) > 0.2 * std::abs(one.reaction().x));
+    const Mesh& mesh = one.world.mesh(one.body);
+    const Vec3 sum = 300 * area_by_rim(mesh, one.world.positions(one.body), outward(mesh, "x0"));
+    CHECK(std::abs(sum.z) > 0.2 * std::abs(sum.x));
+    const Vec3 difference = one.reaction() - sum;
+    CHECK(std::sqrt(dot(difference, difference)) < 1e-8);
   }
 }
 
@@ -125,10 +130,13 @@ TEST_CASE(
     "pressure at a free rim: Newton converges quadratically, with the lagged rim linearly to the same") {
   for (const Element element : kAllElements) {
     INFO(name_of(element));
-    Pressed coupled(slab(element), element, 2e4), lagged(slab(element), element, 2e4, true);
+    Pressed large(slab(element), element, 2e4);
+    large.solve();
+    CHECK(large.report.iterations <= 4);
+    Pressed coupled(slab(element), element, 1e4), lagged(slab(element), element, 1e4, true);
     coupled.solve();
     lagged.solve();
-    CHECK(coupled.report.iterations + coupled.report.corrections <= 9);
+    CHECK(coupled.report.iterations <= 3);
     CHECK(largest_difference(coupled.world.positions(coupled.body), lagged.world.positions(lagged.body)) <
           1e-8);
     CHECK(coupled.reaction().z == Approx(lagged.reaction().z).epsilon(1e-6));
