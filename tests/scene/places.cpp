@@ -20,15 +20,15 @@ std::string hollow_file(const std::filesystem::path& folder) {
       for (int i = 0; i < 4; ++i) out << 0.01 * i << " " << 0.01 * j << " " << 0.01 * k << " 0\n";
     }
   }
-  out << "Hexahedra\n26\n";
-  for (int k = 0; k < 3; ++k) {
-    for (int j = 0; j < 3; ++j) {
-      for (int i = 0; i < 3; ++i) {
-        if (i == 1 && j == 1 && k == 1) continue;
-        const auto n = [&](int a, int b, int c) { return 1 + i + a + 4 * (j + b + 4 * (k + c)); };
-        out << n(0, 0, 0) << " " << n(1, 0, 0) << " " << n(1, 1, 0) << " " << n(0, 1, 0) << " " << n(0, 0, 1)
-            << " " << n(1, 0, 1) << " " << n(1, 1, 1) << " " << n(0, 1, 1) << " 0\n";
-      }
+  out << "Tetrahedra\n156\n";
+  constexpr int kKuhn[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7},
+                               {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
+  for (int cell = 0; cell < 27; ++cell) {
+    if (cell == 13) continue;
+    for (const auto& tet : kKuhn) {
+      for (const int c : tet)
+        out << 1 + cell % 3 + (c & 1) + 4 * (cell / 3 % 3 + (c >> 1 & 1) + 4 * (cell / 9 + (c >> 2))) << " ";
+      out << "0\n";
     }
   }
   out << "End\n";
@@ -39,14 +39,14 @@ std::string hollow_file(const std::filesystem::path& folder) {
 using test::Scratch;
 
 std::string scene_text(const std::string& file, const std::string& more) {
-  return R"({"bodies": [{"name": "b", "mesh": {"file": ")" + file + R"("}, "element": "hex8",
+  return R"({"bodies": [{"name": "b", "mesh": {"file": ")" + file + R"("},
     "surfaces": [
       {"name": "top", "plane": {"point": [0, 0, 0.03], "normal": [0, 0, 2]}},
       {"name": "bottom", "box": [[-1, -1, -1], [1, 1, 0]]},
       {"name": "side", "of": "outer", "seed": {"point": [0.05, 0.015, 0.015], "angle_deg": 10}},
       {"name": "lid", "file": "lid.obj", "scale": 0.001},
       {"name": "ceiling", "of": "chamber 1", "facing": {"direction": [0, 0, -1]}},
-      {"name": "corner", "sphere": {"center": [0, 0, 0.03], "radius": 0.0142}}],
+      {"name": "corner", "sphere": {"center": [0, 0, 0.03], "radius": 0.0143}}],
     "node_sets": [{"name": "foot", "plane": {"normal": [0, 0, 1]}}],
     "materials": [{"young": 1e5, "poisson": 0.45}]}],
   "analysis": {"steps": 1}, "outputs": {"every": 0, "page": false},
@@ -86,6 +86,8 @@ TEST_CASE("surfaces by place, and those of the boundary, can be named wherever a
     if (!chamber) uses.push_back(R"("surface_contacts": [{"name": "s", )" + one + "}]");
     for (const std::string& use : uses) {
       INFO(name << ": " << use);
+      // What is held has no contact.
+      if (name == "bottom" && use.starts_with("\"contacts\"")) continue;
       std::string text = "," + use;
       // The support of the text above stays, under another list where this is one.
       if (use.starts_with("\"dirichlet\""))
