@@ -47,6 +47,10 @@ Json report_json(const std::string& path, const MeshReport& r) {
          {"box_m", Json::array({list_of(r.box[0]), list_of(r.box[1])})},
          {"worst_quality", r.worst_quality},
          {"smallest_dihedral_deg", r.smallest_dihedral_deg}};
+  j["boundary"] = Json::array();
+  for (const BoundaryPart& part : r.boundary) {
+    j["boundary"].push_back({{"name", part.surface.name}, {"volume_m3", part.volume}, {"taken", part.taken}});
+  }
   j["findings"] = Json::array();
   for (const auto& f : r.findings) {
     j["findings"].push_back({{"severity", to_string(f.severity)},
@@ -77,6 +81,19 @@ const char* cell_name(CellType type) {
   return type == CellType::tet10 ? "Tet10" : (type == CellType::hex8 ? "Hex8" : "Tet4");
 }
 
+// What every body has without a group of its mesh.
+void print_boundary(const MeshReport& r, CellType type) {
+  const auto width = static_cast<std::size_t>(nodes_per_face(type));
+  std::string text;
+  for (const BoundaryPart& part : r.boundary) {
+    text += (text.empty() ? "\"" : ", \"") + part.surface.name + "\" (" +
+            std::to_string(part.surface.faces.size() / width);
+    if (&part != &r.boundary.front()) text += " around " + number(part.volume) + " m^3";
+    text += part.taken ? "; a surface of the mesh has this name)" : ")";
+  }
+  if (!text.empty()) std::printf("  boundary  %s, by these names in scenes\n", text.c_str());
+}
+
 void print_report(const std::string& path, const Mesh& mesh, const MeshReport& r) {
   std::printf("%s\n  %d nodes, %d %s in %d part%s\n", path.c_str(), r.nodes, r.cells,
               cell_name(mesh.cell_type), r.parts, r.parts == 1 ? "" : "s");
@@ -86,6 +103,7 @@ void print_report(const std::string& path, const Mesh& mesh, const MeshReport& r
   std::printf("  quality   %s at worst, smallest dihedral angle %s degrees\n",
               number(r.worst_quality, 3).c_str(), number(r.smallest_dihedral_deg, 3).c_str());
   print_sets(mesh);
+  print_boundary(r, mesh.cell_type);
   for (const auto& f : r.findings) {
     std::printf("  %-7s   %s: %s\n", to_string(f.severity), f.code.c_str(), f.message.c_str());
   }

@@ -9,6 +9,7 @@
 #include "constraints/surface_pool.h"
 #include "engine/builder.h"
 #include "engine/mesh/cell_shape.h"
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -83,26 +84,34 @@ Result<void> orient(const BodyData& body, std::vector<Face>& faces, std::span<co
 
 // Boundary loops of the oriented faces: corner nodes in order, with the mid-edge node after each corner for
 // Tet10.
+//
+// A surface is closed where its oriented edges cancel, however many faces meet in one: the volume is a sum
+// over faces, whichever of them are thought to be joined.
 Result<std::vector<std::vector<Index>>> boundary_loops(const std::vector<Face>& faces,
                                                        const std::string& who) {
-  std::map<std::pair<Index, Index>, Index> directed;  // edge -> mid-node or -1
+  struct Edge {
+    int forward = 0, backward = 0;  // faces that run along it from the smaller node on, and against that
+    Index middle = -1;
+  };
+  std::map<std::pair<Index, Index>, Edge> edges;
   for (const Face& f : faces) {
     for (std::size_t k = 0; k < corners_of(f); ++k) {
-      const Index mid = f.size() == 6 ? f[3 + k] : -1;
-      if (!directed.emplace(std::pair(f[k], f[(k + 1) % corners_of(f)]), mid).second) {
-        return Error{
-            who +
-            "its surface is not a manifold: an edge is used twice in the same direction; mend the mesh, "
-            "`isochor check` lists such edges"};
-      }
+      const Index a = f[k], b = f[(k + 1) % corners_of(f)];
+      Edge& edge = edges[std::minmax(a, b)];
+      ++(a < b ? edge.forward : edge.backward);
+      if (f.size() == 6) edge.middle = f[3 + k];
     }
   }
   std::map<Index, std::pair<Index, Index>> next;  // corner -> (next corner, mid)
-  for (const auto& [edge, mid] : directed) {
-    if (directed.count({edge.second, edge.first}) > 0) continue;
+  for (const auto& [ends, edge] : edges) {
+    const int open = edge.forward - edge.backward;
+    if (open == 0) continue;
     // The hole's loop runs against the faces.
-    if (!next.emplace(edge.second, std::pair(edge.first, mid)).second) {
-      return Error{who + "two of its openings touch in one node; separate them in the mesh"};
+    const Index from = open > 0 ? ends.second : ends.first, to = open > 0 ? ends.first : ends.second;
+    if (std::abs(open) > 1 || !next.emplace(from, std::pair(to, edge.middle)).second) {
+      return Error{who +
+                   "two of its openings touch in one node; separate them in the mesh, or add the faces "
+                   "between them to the cavity"};
     }
   }
   std::vector<std::vector<Index>> loops;
@@ -404,6 +413,7 @@ class CavityEffect final : public EffectSource {
       const bool flat = symmetry.planar(loop);
       if (flat || !symmetry.add_loop(loop, per == 6 ? 2 : 1)) fans.push_back(&loop);
     }
+    warn_of_lids(builder, faces, loops.value());
     origin = symmetry.place(origin);
     if (!symmetry.fits(origin)) {
       return Error{who() +
@@ -445,14 +455,44 @@ class CavityEffect final : public EffectSource {
     for (const Index n : loop) {
       if (builder.given_directions(n) > 0) continue;
       const Vec3& X = builder.rest()[at(n)];
-      return Error{
-          who() + "it has an opening of " + std::to_string(loop.size()) + " nodes that nothing caps: node " +
-          std::to_string(n - body.first_node + 1) + " at (" + std::to_string(X.x) + ", " +
-          std::to_string(X.y) + ", " + std::to_string(X.z) +
-          ") is free; hold the rim with a dirichlet support added before the cavity, close the surface, or "
-          "set cap_free_openings"};
+      return Error{who() + "it has an opening of " + std::to_string(loop.size()) +
+                   " nodes that nothing caps: node " + std::to_string(n - body.first_node + 1) + " at (" +
+                   std::to_string(X.x) + ", " + std::to_string(X.y) + ", " + std::to_string(X.z) +
+                   ") is free; close the surface, hold the rim with a dirichlet support added before the "
+                   "cavity, or set "
+                   "cap_free_openings for a membrane that seals it and pulls on its rim. For a load on faces "
+                   "that bound no "
+                   "chamber take a pressure (it follows them) or a traction"};
     }
     return {};
+  }
+
+  // A cap hands the force on it to its rim. Over faces that point one way it is as large as that on them, and
+  // what was meant as a load ends as a pinch of the rim.
+  void warn_of_lids(Builder& builder, const std::vector<Face>& faces,
+                    const std::vector<std::vector<Index>>& loops) const {
+    const auto is_free = [&](const std::vector<Index>& loop) {
+      return std::any_of(loop.begin(), loop.end(), [&](Index n) { return builder.given_directions(n) == 0; });
+    };
+    if (std::none_of(loops.begin(), loops.end(), is_free)) return;
+    const auto rest = builder.rest();
+    Vec3 sum{};
+    double area = 0;
+    for (const Face& f : faces) {
+      const std::size_t last = corners_of(f) - 1;
+      const Vec3 n = 0.5 * cross(rest[at(f[last - 1])] - rest[at(f[0])],
+                                 rest[at(f[last])] - rest[at(f[last == 3 ? 1 : 0])]);
+      sum += n;
+      area += std::sqrt(dot(n, n));
+    }
+    const double net = std::sqrt(dot(sum, sum));
+    if (net < 0.3 * area) return;
+    builder.warn(who() +
+                 "its surface is mostly open, and the cap over its free rim cancels the load: of the force "
+                 "on the faces, " +
+                 number(net) +
+                 " m^2 times the pressure, nothing reaches the supports; "
+                 "take a pressure (or a traction) for a load on faces that bound no chamber");
   }
 
   Result<std::unique_ptr<EffectInstance>> finish(Builder& builder,

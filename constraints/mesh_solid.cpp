@@ -6,7 +6,7 @@
 #include <map>
 
 #include "constraints/closed_surface.h"
-#include "constraints/triangle.h"
+#include "engine/triangle.h"
 
 namespace isochor {
 

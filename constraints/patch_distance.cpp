@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "constraints/crossing.h"
-#include "constraints/triangle.h"
+#include "engine/triangle.h"
 
 namespace isochor {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <map>
 
-#include "constraints/triangle.h"
+#include "engine/triangle.h"
 
 namespace isochor {
 

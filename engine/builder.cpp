@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "engine/elements/element_guard.h"
+#include "engine/mesh/available_memory.h"
 #include "engine/scene_checks.h"
 #include "engine/supports.h"
 #include "isochor/generate.h"
@@ -84,7 +86,15 @@ Result<void> Builder::add_regions(const BodyDef& def, BodyData& body) const {
   const Mesh& mesh = body.mesh;
   std::vector<std::string> names = mesh.regions;
   if (names.empty()) names = {"body"};
-  for (const RegionMaterial& m : def.materials) {
+  for (std::size_t i = 0; i < def.materials.size(); ++i) {
+    const RegionMaterial& m = def.materials[i];
+    for (std::size_t k = 0; k < i; ++k) {
+      if (def.materials[k].region != m.region) continue;
+      return Error{"body \"" + def.name + "\": materials " + std::to_string(k) + " and " + std::to_string(i) +
+                   (m.region.empty() ? " are both for all regions that no other names"
+                                     : " are both for region \"" + m.region + "\"") +
+                   "; keep one of them, or give each a region of its own"};
+    }
     if (!m.region.empty() && std::find(names.begin(), names.end(), m.region) == names.end()) {
       return Error{unknown_name("body \"" + def.name + "\": materials", "region", m.region, def.name, names)};
     }
@@ -147,13 +157,18 @@ Result<void> Builder::add_body(const BodyDef& def) {
     if (other.name == def.name)
       return Error{"body \"" + def.name + "\": another body has this name; names must differ"};
   }
+  const CellType cells = def.element == Element::tet10 ? CellType::tet10 : def.mesh.cell_type;
+  if (const auto why = too_large_for_memory(def.mesh.cell_count(), cells, MeshUse::simulate); !why.empty())
+    return Error{"body \"" + def.name + "\": " + why};
   const MeshReport report = check_mesh(def.mesh);
   for (const MeshFinding& finding : report.findings) {
     if (finding.severity == Severity::error) {
       return Error{"body \"" + def.name + "\": mesh " + def.mesh.source + ": " + finding.message};
     }
     if (finding.severity == Severity::warning) {
-      warn("body \"" + def.name + "\": mesh " + def.mesh.source + ": " + finding.message);
+      const std::string text = "body \"" + def.name + "\": mesh " + def.mesh.source + ": " + finding.message;
+      if (finding.code == "units") doubtful_units_ += "; mind the units: " + text;
+      warn(text);
     }
   }
   if (auto r = check_element(def); !r) return r;
@@ -162,15 +177,15 @@ Result<void> Builder::add_body(const BodyDef& def) {
   body.element = def.element;
   body.guard_stiffness = def.guard_stiffness;
   body.guard_threshold = def.guard_threshold;
+  body.mesh = def.mesh;
+  for (const BoundaryPart& part : report.boundary) {
+    if (!part.taken) body.mesh.surfaces.push_back(part.surface);
+  }
   if (def.element == Element::tet10) {
-    body.mesh = to_tet10(def.mesh);
+    body.mesh = to_tet10(body.mesh);
     body.reference = &tet10_element();
-  } else if (def.element == Element::hex8) {
-    body.mesh = def.mesh;
-    body.reference = &hex8_element();
   } else {
-    body.mesh = def.mesh;
-    body.reference = &tet4_element();
+    body.reference = def.element == Element::hex8 ? &hex8_element() : &tet4_element();
   }
   if (auto r = add_regions(def, body); !r) return r;
   body.first_node = static_cast<Index>(parts_.rest.size());
@@ -328,6 +343,22 @@ Result<std::vector<std::size_t>> Builder::regions(BodyId id, std::span<const std
   return found;
 }
 
+// Surfaces may share faces, and merged groups list some twice: nothing acts twice on one. The first of each
+// stays where it is.
+static void drop_repeated_faces(std::vector<Index>& faces, std::size_t per) {
+  std::set<std::array<Index, 4>> seen;
+  std::size_t kept = 0;
+  for (std::size_t f = 0; f + per <= faces.size(); f += per) {
+    std::array<Index, 4> corners{-1, -1, -1, -1};
+    std::copy_n(faces.begin() + static_cast<std::ptrdiff_t>(f), per == 4 ? 4 : 3, corners.begin());
+    std::sort(corners.begin(), corners.end());
+    if (!seen.insert(corners).second) continue;
+    for (std::size_t k = 0; k < per; ++k) faces[kept + k] = faces[f + k];
+    kept += per;
+  }
+  faces.resize(kept);
+}
+
 Result<std::vector<Index>> Builder::faces(BodyId id, std::span<const std::string> surfaces,
                                           const std::string& who) const {
   if (!has_body(id))
@@ -335,6 +366,7 @@ Result<std::vector<Index>> Builder::faces(BodyId id, std::span<const std::string
   const BodyData& b = body(id);
   std::vector<std::string> known;
   for (const auto& s : b.mesh.surfaces) known.push_back(s.name);
+  const auto per = static_cast<std::size_t>(nodes_per_face(b.mesh.cell_type));
   std::vector<Index> found;
   for (const std::string& name : surfaces) {
     const auto it = std::find(known.begin(), known.end(), name);
@@ -343,6 +375,7 @@ Result<std::vector<Index>> Builder::faces(BodyId id, std::span<const std::string
       found.push_back(n + b.first_node);
     }
   }
+  drop_repeated_faces(found, per);
   if (found.empty()) return Error{who + ": no faces selected; name at least one surface that has faces"};
   return found;
 }
@@ -488,7 +521,13 @@ Result<SystemParts> Builder::finish(bool needs_anchors) {
     for (const Given& g : given_[at(i)]) terms.push_back({g.direction, g.motion});
     if (!terms.empty()) supports->add(i, parts_.rest[at(i)], std::move(terms));
   }
-  const SceneFacts facts{bodies_, parts_, *supports};
+  SceneFacts facts{bodies_, parts_, *supports, {}};
+  for (Index i = 0; i < static_cast<Index>(given_.size()); ++i) {
+    for (const Given& g : given_[at(i)]) {
+      auto& nodes = facts.held_by[g.who];
+      if (nodes.empty() || nodes.back() != i) nodes.push_back(i);
+    }
+  }
   if (needs_anchors) {
     if (auto r = check_anchored(facts); !r) return Error{r.error()};
   }

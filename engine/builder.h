@@ -211,6 +211,8 @@ class Builder {
   bool quasi_static() const { return quasi_static_; }
   void set_quasi_static(bool on) { quasi_static_ = on; }
   void warn(std::string text) { warnings_.push_back(std::move(text)); }
+  // What the meshes say of their units, to end a message with; empty where the sizes are plausible.
+  const std::string& doubtful_units() const { return doubtful_units_; }
 
   // Merges supports, checks the scene and hands the parts over.
   Result<SystemParts> finish(bool needs_anchors);
@@ -232,6 +234,7 @@ class Builder {
   friend class SupportPrescriber;
   std::vector<std::vector<Given>> given_;
   std::vector<std::string> warnings_;
+  std::string doubtful_units_;
   std::map<std::string, std::shared_ptr<void>> shared_;
   Index owner_ = -1;  // effect being built
   bool consistent_mass_ = false;

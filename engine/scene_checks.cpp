@@ -5,9 +5,12 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
+
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -53,13 +56,87 @@ const BodyData& body_of(const SceneFacts& facts, Index node) {
   return *found;
 }
 
-// Words for a free rigid motion, the first three components being the translation at the center.
-std::string describe(const Eigen::Matrix<double, 6, 1>& mode) {
-  static const char* const kName[6] = {"translation along x", "translation along y", "translation along z",
-                                       "rotation about x",    "rotation about y",    "rotation about z"};
-  int best = 0;
-  mode.cwiseAbs().maxCoeff(&best);
-  return kName[best];
+std::string shown(const Eigen::Vector3d& v) {
+  return std::string("(") + number(v.x()) + ", " + number(v.y()) + ", " + number(v.z()) + ")";
+}
+
+// The directions of a space: axes where they span it, else vectors. Columns are orthonormal.
+std::string directions(const Eigen::MatrixXd& space) {
+  std::string axes, vectors;
+  Eigen::Index found = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (space.row(k).norm() < 1 - 1e-6) continue;
+    axes += (found == 0 ? "" : (found + 1 == space.cols() ? " and " : ", ")) + std::string(1, "xyz"[k]);
+    ++found;
+  }
+  if (found == space.cols()) return axes;
+  for (Eigen::Index c = 0; c < space.cols(); ++c) {
+    Eigen::Vector3d v = space.col(c);
+    v = (v.array().abs() < 1e-9).select(0, v);
+    vectors += (c == 0 ? "" : " and ") + shown(v);
+  }
+  return vectors;
+}
+
+// Words for the free rigid motions of a part. Columns of `modes` are orthonormal; the first three components
+// are the translation at `center`, the others the rotation times `size`.
+std::string describe(const Eigen::MatrixXd& modes, const Eigen::Vector3d& center, double size) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> turns(modes.bottomRows(3),
+                                                Eigen::ComputeThinU | Eigen::ComputeFullV);
+  const auto values = turns.singularValues();
+  Eigen::Index rank = 0;
+  while (rank < values.size() && values[rank] > 1e-6) ++rank;
+  // What turns nothing is a translation.
+  const Eigen::MatrixXd shifts = modes.topRows(3) * turns.matrixV().rightCols(modes.cols() - rank);
+  std::string text;
+  if (shifts.cols() > 0) text = "translation along " + directions(shifts);
+  if (rank == 0) return text;
+  text += (text.empty() ? "" : " and ") + ("rotation about " + directions(turns.matrixU().leftCols(rank)));
+  if (shifts.cols() > 0) return text;
+  // The point that all of them leave where it is: t + w x (p - center) = 0, w = rotation / size.
+  Eigen::MatrixXd crosses(3 * modes.cols(), 3);
+  Eigen::VectorXd shift(3 * modes.cols());
+  for (Eigen::Index c = 0; c < modes.cols(); ++c) {
+    const Eigen::Vector3d w = modes.col(c).tail(3) / size;
+    crosses.middleRows(3 * c, 3) << 0, -w.z(), w.y(), w.z(), 0, -w.x(), -w.y(), w.x(), 0;
+    shift.segment(3 * c, 3) = -modes.col(c).head(3);
+  }
+  const Eigen::Vector3d arm = crosses.completeOrthogonalDecomposition().solve(shift);
+  if ((crosses * arm - shift).norm() > 1e-6) return text;
+  Eigen::Vector3d point = center + arm;
+  for (int k = 0; k < 3; ++k) {
+    if (std::abs(point[k]) < 1e-9 * size) point[k] = 0;
+  }
+  return text + " through " + shown(point) + " m";
+}
+
+// "support "base" holds 1 node", of a part.
+std::string what_holds(const SceneFacts& facts, std::span<const Index> part, Index which) {
+  std::string text;
+  for (const auto& [name, nodes] : facts.held_by) {
+    const auto count =
+        std::count_if(nodes.begin(), nodes.end(), [&](Index n) { return part[at(n)] == which; });
+    if (count == 0) continue;
+    text += (text.empty() ? "" : ", ") + ("support \"" + name + "\" holds " + std::to_string(count)) +
+            (count == 1 ? " node" : " nodes") + " of it";
+  }
+  return text.empty() ? "no support holds a node of it" : text;
+}
+
+// Which part of a body a part is, by number of nodes and box, where there are several.
+std::string which_part(const SceneFacts& facts, std::span<const Index> part, Index which, Index parts) {
+  if (parts <= static_cast<Index>(facts.bodies.size())) return "it";
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  Index nodes = 0;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (part[i] != which) continue;
+    const Vec3& x = facts.parts.rest[i];
+    low = low.cwiseMin(Eigen::Vector3d(x.x, x.y, x.z));
+    high = high.cwiseMax(Eigen::Vector3d(x.x, x.y, x.z));
+    ++nodes;
+  }
+  return "one of its parts (" + std::to_string(nodes) + " nodes from " + shown(low) + " to " + shown(high) +
+         " m)";
 }
 
 }  // namespace
@@ -159,17 +236,16 @@ Result<void> check_anchored(const SceneFacts& facts) {
   for (Index c = 0; c < count; ++c) {
     const Eigen::SelfAdjointEigenSolver<Mat6> eigen(gram[at(c)]);
     const double largest = std::max(eigen.eigenvalues()(5), 1e-300);
-    std::string modes;
-    for (int k = 0; k < 6; ++k) {
-      if (eigen.eigenvalues()(k) > 1e-8 * largest) continue;
-      modes += (modes.empty() ? "" : ", ") + describe(eigen.eigenvectors().col(k));
-    }
-    if (modes.empty()) continue;
+    Eigen::Index free = 0;
+    while (free < 6 && eigen.eigenvalues()(free) <= 1e-8 * largest) ++free;
+    if (free == 0) continue;
+    const Vec3& middle = center[at(c)];
+    const std::string motions =
+        describe(eigen.eigenvectors().leftCols(free), {middle.x, middle.y, middle.z}, size[at(c)]);
     const BodyData& body = body_of(facts, sample[at(c)]);
-    return Error{"body \"" + body.name + "\": nothing holds " +
-                 (count > static_cast<Index>(facts.bodies.size()) ? "one of its parts" : "it") + " against " +
-                 modes +
-                 ", so statics has no unique answer; add a dirichlet support or use a dynamic scheme"};
+    return Error{"body \"" + body.name + "\": nothing holds " + which_part(facts, part, c, count) +
+                 " against " + motions + ", so statics has no unique answer: " + what_holds(facts, part, c) +
+                 "; add a dirichlet support, let one hold more nodes, or use a dynamic scheme"};
   }
   return {};
 }

@@ -1,6 +1,8 @@
 // What makes a scene unsolvable before the first step, each with its name and remedy.
 #pragma once
 
+#include <map>
+
 #include "engine/builder.h"
 #include "engine/supports.h"
 
@@ -10,6 +12,7 @@ struct SceneFacts {
   const std::vector<BodyData>& bodies;
   const SystemParts& parts;
   const SupportPrescriber& supports;
+  std::map<std::string, std::vector<Index>> held_by;  // nodes that each support holds, in any direction
 };
 
 // Statics: every connected part must be held against its six rigid motions.

@@ -88,10 +88,15 @@ Result<EffectId> World::add(EffectPtr effect) {
 Result<void> World::Impl::compile() {
   if (compiled()) return {};
   if (!compile_error.empty()) return Error{compile_error};
-  auto result = compile_once();
-  // A builder is used up by a failed attempt; the reason stays.
-  if (!result) compile_error = result.error();
-  return result;
+  const auto result = compile_once();
+  for (const std::string& warning : builder.warnings()) {
+    if (options.log) options.log(warning);
+  }
+  if (result) return {};
+  // A builder is used up by a failed attempt; the reason stays. Wrong units make supports miss their nodes
+  // and probes their cells, so whoever did not hear of them does so here.
+  compile_error = result.error() + (options.log ? "" : builder.doubtful_units());
+  return Error{compile_error};
 }
 
 Result<void> World::Impl::compile_once() {
@@ -108,9 +113,6 @@ Result<void> World::Impl::compile_once() {
     instances.push_back(std::move(instance).value());
   }
   held_by = builder.held_directions(sources.size());
-  for (const std::string& warning : builder.warnings()) {
-    if (options.log) options.log(warning);
-  }
   auto parts = builder.finish(!options.scheme->has_inertia());
   if (!parts) return Error{parts.error()};
   if (auto r = make_method(std::move(parts).value()); !r) return r;

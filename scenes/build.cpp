@@ -54,6 +54,25 @@ std::string place(const char* list, std::size_t i) {
   return std::string(list) + "[" + std::to_string(i) + "]";
 }
 
+// Surfaces and node sets that the scene names by where they are.
+Result<void> name_places(const SceneBody& body, const std::string& folder, Mesh& mesh) {
+  const auto add_all = [&](const char* list, const std::vector<MeshSelection>& all,
+                           const auto& add_one) -> Result<void> {
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      MeshSelection one = all[i];
+      if (!one.file.empty()) {
+        auto surface = read_surface(path_in(folder, one.file), one.scale);
+        if (!surface) return Error{place(list, i) + ".file: " + surface.error()};
+        one.lies_on = std::move(surface).value();
+      }
+      if (auto r = add_one(mesh, one); !r) return Error{place(list, i) + ": " + r.error()};
+    }
+    return {};
+  };
+  if (auto r = add_all("surfaces", body.surfaces, add_surface); !r) return r;
+  return add_all("node_sets", body.node_sets, add_node_set);
+}
+
 Result<void> add_bodies(const SceneDef& scene, const BuildOptions& options, BuiltScene& built) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const SceneBody& body = scene.bodies[b];
@@ -65,6 +84,8 @@ Result<void> add_bodies(const SceneDef& scene, const BuildOptions& options, Buil
     auto mesh = make_mesh(body, scene.folder, built.surfaces.emplace_back());
     if (!mesh) return Error{place("bodies", b) + ".mesh: " + mesh.error()};
     def.mesh = std::move(mesh).value();
+    if (auto r = name_places(body, scene.folder, def.mesh); !r)
+      return Error{place("bodies", b) + "." + r.error()};
     for (std::size_t m = 0; m < body.materials.size(); ++m) {
       auto material = make_material(body.materials[m], scene.folder);
       if (!material) return Error{place("bodies", b) + "." + place("materials", m) + ": " + material.error()};
@@ -111,6 +132,7 @@ Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, Bui
     built.dirichlet.push_back(add(dirichlet(def)));
   }
   for (const auto& def : scene.tractions) built.tractions.push_back(add(traction(def)));
+  for (const auto& def : scene.pressures) built.pressures.push_back(add(pressure(def)));
   for (const auto& def : scene.damping) add(damping(def));
   for (const auto& def : scene.epidermis) add(epidermis(def));
   for (const auto& def : scene.membranes) add(membrane(def));

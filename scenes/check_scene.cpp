@@ -22,6 +22,15 @@ std::string place(const char* list, std::size_t i) {
   return std::string(list) + "[" + std::to_string(i) + "]";
 }
 
+// A name fit for a message: what would end or garble a line is shown as a question mark.
+std::string printable(std::string text) {
+  for (char& c : text) {
+    const auto u = static_cast<unsigned char>(c);
+    if (u < 0x20 || u == 0x7f) c = '?';
+  }
+  return text;
+}
+
 // Names become file names, CSV columns and keys of the summary.
 Result<void> check_name(const std::string& where, const std::string& name) {
   if (name.empty()) return Error{where + ".name is empty; give it a name"};
@@ -29,8 +38,15 @@ Result<void> check_name(const std::string& where, const std::string& name) {
     return Error{where + ".name has " + std::to_string(name.size()) + " characters; 100 are allowed"};
   for (const char c : name) {
     const auto u = static_cast<unsigned char>(c);
-    if (u < 0x20 || c == '/' || c == '\\' || c == '"' || c == ',') {
-      return Error{where + ".name = \"" + name + "\" has a character that file names or tables cannot hold"};
+    if (u < 0x20 || u == 0x7f) {
+      char code[8];
+      std::snprintf(code, sizeof code, "U+%04X", u);
+      return Error{where + ".name = \"" + printable(name) + "\" has the control character " + code +
+                   ", which file names and tables cannot hold; remove it"};
+    }
+    if (c == '/' || c == '\\' || c == '"' || c == ',') {
+      return Error{where + ".name = \"" + printable(name) + "\" has the character '" + c +
+                   "', which file names or tables cannot hold; take another"};
     }
   }
   return {};
@@ -59,6 +75,11 @@ Result<void> check_names(const char* list, const std::vector<T>& items) {
 Result<void> check_all_names(const SceneDef& s) {
   if (auto r = check_name("scene", s.name); !r) return r;
   if (auto r = check_names("bodies", s.bodies); !r) return r;
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    const std::string body = place("bodies", b);
+    if (auto r = check_names((body + ".surfaces").c_str(), s.bodies[b].surfaces); !r) return r;
+    if (auto r = check_names((body + ".node_sets").c_str(), s.bodies[b].node_sets); !r) return r;
+  }
   if (auto r = check_names("probes", s.probes); !r) return r;
   if (auto r = check_names("metrics", s.metrics); !r) return r;
   // Effects share one set of names: reactions and gauges are told apart by them.
@@ -71,6 +92,7 @@ Result<void> check_all_names(const SceneDef& s) {
   if (auto r = check_names("dirichlet", s.dirichlet, plain, seen); !r) return r;
   if (auto r = check_names("cavities", s.cavities, plain, seen); !r) return r;
   if (auto r = check_names("tractions", s.tractions, plain, seen); !r) return r;
+  if (auto r = check_names("pressures", s.pressures, plain, seen); !r) return r;
   if (auto r = check_names("damping", s.damping, plain, seen); !r) return r;
   if (auto r = check_names("epidermis", s.epidermis, plain, seen); !r) return r;
   if (auto r = check_names("membranes", s.membranes, plain, seen); !r) return r;
@@ -114,6 +136,7 @@ Result<void> check_all_curves(const SceneDef& s) {
   if (auto r = check_curves("dirichlet", s.dirichlet); !r) return r;
   if (auto r = check_curves("cavities", s.cavities); !r) return r;
   if (auto r = check_curves("tractions", s.tractions); !r) return r;
+  if (auto r = check_curves("pressures", s.pressures); !r) return r;
   if (auto r = check_curves("cables", s.cables); !r) return r;
   if (auto r = check_curves("valves", s.valves); !r) return r;
   return check_curves("forces", s.forces);

@@ -88,6 +88,7 @@ std::vector<EffectNote> notes_of(const SceneDef& scene, bool guarded) {
   };
   list("support", scene.dirichlet);
   list("traction", scene.tractions);
+  list("pressure", scene.pressures);
   list("force", scene.forces);
   list("cavity", scene.cavities);
   list("damping", scene.damping);

@@ -13,6 +13,7 @@
 #include "isochor/effects.h"
 #include "isochor/generate.h"
 #include "isochor/lattice.h"
+#include "isochor/mesh_select.h"
 #include "isochor/world.h"
 
 namespace isochor {
@@ -86,6 +87,8 @@ struct LatticeMesh {
 struct SceneBody {
   std::string name = "body";
   std::variant<MeshFile, BoxMeshDef, LatticeMesh> mesh;
+  // Named by where they are, beside those of the mesh file; in the placed mesh, after scale, turn and offset.
+  std::vector<MeshSelection> surfaces, node_sets;
   Element element = Element::tet4_edge_smoothed;
   std::vector<MaterialDef> materials;
   std::optional<double> guard_stiffness;  // see BodyDef
@@ -208,6 +211,7 @@ struct SceneDef {
   std::vector<DirichletDef> dirichlet;
   std::vector<CavityDef> cavities;
   std::vector<TractionDef> tractions;
+  std::vector<PressureDef> pressures;
   std::vector<PointForceDef> forces;
   std::vector<DampingDef> damping;
   std::vector<EpidermisDef> epidermis;
@@ -250,7 +254,7 @@ struct DisplaySurface {
 struct BuiltScene {
   World world;
   std::vector<BodyId> bodies;
-  std::vector<EffectId> dirichlet, cavities, tractions, forces, cables, valves;
+  std::vector<EffectId> dirichlet, cavities, tractions, forces, cables, valves, pressures = {};
   std::vector<DisplaySurface> surfaces = {};  // by body; empty where its mesh is shown
   std::vector<Obstacle> obstacles = {};       // by contact, with what their files hold
   std::vector<Obstacle> rigid_shapes = {};    // by rigid body, likewise

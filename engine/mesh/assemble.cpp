@@ -359,6 +359,14 @@ Mesh assemble(RawMesh raw, double scale) {
   note_shared_cells(raw, mesh);
   adopt_surfaces(raw, mesh);
   adopt_node_sets(raw, mesh);
+  if (raw.stray_lines > 0) {
+    mesh.notes.push_back({"stray-line",
+                          join(raw.stray_lines, raw.stray_lines == 1 ? " line" : " lines",
+                               " outside of the sections of the file left out (Gmsh appends commands of its ",
+                               "window to the file that is open)"),
+                          raw.stray_lines,
+                          {}});
+  }
   if (raw.foreign_faces > 0) {
     mesh.notes.push_back(
         {"foreign-face",

@@ -38,6 +38,23 @@ FaceCorners outward_corners(const Mesh& mesh, const CellFace& face) {
   return corners;
 }
 
+void append_face(const Mesh& mesh, const CellFace& face, std::vector<Index>& nodes) {
+  const auto width = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
+  const CellShape& shape = cell_shape(mesh.cell_type);
+  const Index* n = &mesh.cells[width * at(face.cell)];
+  const auto& corner = shape.side[at(face.local)];
+  for (std::size_t k = 0; k < shape.side_corners; ++k) nodes.push_back(n[corner[k]]);
+  if (width != 10) return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t a = std::min(corner[k], corner[(k + 1) % 3]),
+                      b = std::max(corner[k], corner[(k + 1) % 3]);
+    for (std::size_t e = 0; e < 6; ++e) {
+      const auto [low, high] = std::minmax(kTetShape.edge[e][0], kTetShape.edge[e][1]);
+      if (low == a && high == b) nodes.push_back(n[4 + e]);
+    }
+  }
+}
+
 namespace {
 
 // An edge of a surface and the face it belongs to.
@@ -171,7 +188,13 @@ double cone6(const Mesh& mesh, const CellFace& face, const Vec3& apex) {
   return (4 * four - one) / 3;
 }
 
-// The boundary seen from outside has positive volume; a component with negative volume encloses a void.
+bool has_surface(const Mesh& mesh, const std::string& name) {
+  return std::any_of(mesh.surfaces.begin(), mesh.surfaces.end(),
+                     [&](const MeshSurface& s) { return s.name == name; });
+}
+
+// The boundary seen from outside has positive volume; a component with negative volume encloses a void. Both
+// get a name.
 void check_cavities(const Mesh& mesh, const std::vector<SurfaceEdge>& edges,
                     const std::vector<CellFace>& boundary, MeshReport& report) {
   Groups groups(boundary.size());
@@ -186,13 +209,27 @@ void check_cavities(const Mesh& mesh, const std::vector<SurfaceEdge>& edges,
   Tally cavities;
   std::string sizes;
   const Vec3 box = report.box[1] - report.box[0];
+  report.boundary.push_back({{"outer", {}}, 0, has_surface(mesh, "outer")});
+  std::map<Index, std::size_t> part;  // root -> place in report.boundary; the others are outer
   for (const auto& [root, v] : volume) {
-    if (!(v < -1e-12 * box.x * box.y * box.z)) continue;
+    if (!(v < -1e-12 * box.x * box.y * box.z)) {
+      report.boundary[0].volume += v;
+      continue;
+    }
     cavities.add(cell_label(mesh, boundary[at(root)].cell));
-    if (cavities.count() <= 8) sizes += (sizes.empty() ? "" : ", ") + shown(-v);
+    part[root] = report.boundary.size();
+    const std::string name = "chamber " + std::to_string(report.boundary.size());
+    report.boundary.push_back({{name, {}}, -v, has_surface(mesh, name)});
+    if (cavities.count() <= 8) sizes += (sizes.empty() ? "" : ", ") + shown(-v) + " (\"" + name + "\")";
+  }
+  for (std::size_t t = 0; t < boundary.size(); ++t) {
+    const auto found = part.find(groups.root(static_cast<Index>(t)));
+    const std::size_t at_part = found == part.end() ? 0 : found->second;
+    append_face(mesh, boundary[t], report.boundary[at_part].surface.faces);
   }
   cavities.report(report, Severity::note, "cavity", "inner closed surface", "inner closed surfaces",
-                  "with a volume of " + sizes + " m^3", "next to cell ");
+                  "with a volume of " + sizes + " m^3; scenes can use it by this name unless a group has it",
+                  "next to cell ");
 }
 
 Faces corners_of(const MeshSurface& surface, CellType type) {
@@ -245,7 +282,7 @@ void check_surface(const Mesh& mesh, const MeshSurface& surface, const std::vect
   const auto repeats = sorted.end() - std::unique(sorted.begin(), sorted.end());
   if (repeats > 0) {
     add(Severity::warning, "repeated-face", repeats,
-        join("has ", repeats, " faces twice, so that loads on it count twice; remove the copies"));
+        join("lists ", repeats, repeats == 1 ? " face" : " faces", " more than once; each counts once"));
   }
   const std::int64_t loops = count_loops(mesh, sorted_edges(given));
   if (loops > 0) {

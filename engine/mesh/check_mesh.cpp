@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/mesh/available_memory.h"
 #include "engine/mesh/check_parts.h"
 
 namespace isochor {
@@ -160,6 +161,10 @@ MeshReport check_mesh(const Mesh& mesh) {
     report.findings.push_back({Severity::note, note.code, note.message, note.count, note.examples});
   }
   if (!mesh_files::check_arrays(mesh, report)) return report;
+  if (auto why = too_large_for_memory(mesh.cell_count(), mesh.cell_type, MeshUse::check); !why.empty()) {
+    report.findings.push_back({Severity::error, "too-large", std::move(why), 1, {}});
+    return report;
+  }
   mesh_files::check_nodes(mesh, report);
   mesh_files::check_cells(mesh, report);
   const std::vector<mesh_files::CellFace> faces = mesh_files::sorted_cell_faces(mesh);

@@ -68,6 +68,9 @@ std::vector<CellFace> sorted_cell_faces(const Mesh& mesh);
 // Corners of a face, seen from outside of its cell.
 FaceCorners outward_corners(const Mesh& mesh, const CellFace& face);
 
+// Appends the nodes of a face as MeshSurface has them, wound outward.
+void append_face(const Mesh& mesh, const CellFace& face, std::vector<Index>& nodes);
+
 // Arrays of the right length, indices in range, finite numbers. Nothing else may run on a mesh that fails
 // here.
 bool check_arrays(const Mesh& mesh, MeshReport& report);

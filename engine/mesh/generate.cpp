@@ -3,6 +3,7 @@
 #include <map>
 
 #include "engine/base.h"
+#include "engine/mesh/available_memory.h"
 #include "engine/mesh/cell_shape.h"
 
 namespace isochor {
@@ -58,9 +59,14 @@ Result<Mesh> box_mesh(const BoxMeshDef& def) {
     }
   }
   const Index nx = def.divisions[0], ny = def.divisions[1], nz = def.divisions[2];
+  const double cells = static_cast<double>(nx) * ny * nz * (def.cell_type == CellType::hex8 ? 1 : 6);
+  if (const auto why = too_large_for_memory(cells, def.cell_type, MeshUse::check); !why.empty()) {
+    return Error{"box mesh of " + std::to_string(nx) + " x " + std::to_string(ny) + " x " +
+                 std::to_string(nz) + " divisions: " + why};
+  }
   if (static_cast<std::int64_t>(nx) * ny * nz > 20'000'000) {
     return Error{"box mesh: " + std::to_string(static_cast<std::int64_t>(nx) * ny * nz) +
-                 " cells are more than the 20 million this generator makes"};
+                 " divisions are more than the 20 million this generator makes; use fewer divisions"};
   }
   Mesh mesh;
   mesh.source = "box";

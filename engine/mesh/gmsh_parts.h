@@ -31,9 +31,11 @@ struct GmshFile {
   std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> entity_groups;
 
   Index node(std::int64_t label) const;
-  // Files one element under its physical groups; nodes are indices. `groups` may be empty.
+  // Files one element under its physical groups, a face without one under its entity; nodes are indices.
   void add_element(const GmshType& type, std::int64_t label, std::span<const std::int64_t> groups,
-                   std::span<const Index> nodes);
+                   std::int64_t entity, std::span<const Index> nodes);
+  // Names the surfaces of entities by their numbers, once all is read.
+  void name_entities();
   void add_node(std::int64_t label, const Vec3& position);
   void finish_nodes();
   void require_nodes() const;

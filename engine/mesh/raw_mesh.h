@@ -45,7 +45,8 @@ struct RawMesh {
 
   std::map<std::string, std::int64_t> foreign_cells;  // volume cells of no kind that is read, by type
   std::int64_t foreign_faces = 0;                     // faces that no cell can have (polygons, ...)
-  std::int64_t flat_cells = 0;  // faces, edges and points seen, for the message when there is no volume cell
+  std::int64_t flat_cells = 0;   // faces, edges and points seen, for the message when there is no volume cell
+  std::int64_t stray_lines = 0;  // outside of the sections of the file
   std::int64_t shared_cells = 0;  // cells in more than one region
   std::vector<std::int64_t> shared_examples;
 

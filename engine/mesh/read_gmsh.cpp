@@ -1,6 +1,7 @@
 // Gmsh files: header, names, node data and the order of sections; nodes and elements are in read_gmsh2/4.cpp.
 #include <algorithm>
 #include <cstdlib>
+#include <set>
 
 #include "engine/mesh/gmsh_parts.h"
 #include "engine/mesh/readers.h"
@@ -54,8 +55,15 @@ Index GmshFile::node(std::int64_t label) const {
   return found;
 }
 
+namespace {
+
+// Entities and physical groups are numbered apart; surfaces of entities come behind all groups.
+constexpr std::int64_t kEntities = std::int64_t{1} << 48;
+
+}  // namespace
+
 void GmshFile::add_element(const GmshType& type, std::int64_t label, std::span<const std::int64_t> groups,
-                           std::span<const Index> nodes) {
+                           std::int64_t entity, std::span<const Index> nodes) {
   if (type.dim == 3 && (type.nodes == 10 || type.nodes == 4 || type.nodes == 8)) {
     raw.add_cell(at, label, groups.empty() ? no_tag : groups[0], nodes, gmsh_tet10);
     if (groups.size() > 1) {
@@ -69,12 +77,32 @@ void GmshFile::add_element(const GmshType& type, std::int64_t label, std::span<c
     const bool fits = type.nodes == 3 || type.nodes == 6 || type.nodes == 4;
     if (!fits) ++raw.foreign_faces;
     for (std::size_t g = 0; fits && g < groups.size(); ++g) raw.add_face(at, groups[g], nodes);
+    const bool numbered = entity > 0 && entity < kEntities;
+    if (fits && groups.empty() && numbered) raw.add_face(at, kEntities + entity, nodes);
   } else {
     ++raw.flat_cells;
     for (const std::int64_t g : groups) {
       std::vector<Index>& set = raw.node_sets[{type.dim, g}].nodes;
       set.insert(set.end(), nodes.begin(), nodes.end());
     }
+  }
+}
+
+void GmshFile::name_entities() {
+  std::set<std::string> taken;
+  std::vector<std::int64_t> entities;
+  for (const auto* list : {&raw.surfaces, &raw.quadrangles}) {
+    for (const auto& [tag, surface] : *list) {
+      if (tag >= kEntities)
+        entities.push_back(tag);
+      else
+        taken.insert(std::to_string(tag));
+    }
+  }
+  for (const auto& [tag, name] : raw.surface_name) taken.insert(name);
+  for (const std::int64_t tag : entities) {
+    const std::string number = std::to_string(tag - kEntities);
+    raw.surface_name[tag] = taken.count(number) > 0 ? "entity " + number : number;
   }
 }
 
@@ -200,6 +228,69 @@ bool read_section(GmshFile& f, std::string_view name, int major) {
   return true;
 }
 
+// Moves behind $ElementData or $ElementNodeData of a binary file by its counts: a binary number may look like
+// the end of the section, and some writers put that behind the last number without a line of its own. False,
+// and nothing moved, where the counts make no sense.
+bool skip_element_data(GmshFile& f, bool by_node) {
+  Cursor at = f.at;
+  try {
+    const std::size_t texts = at.checked_count(at.integer("the number of texts"), 2, "the number of texts");
+    for (std::size_t i = 0; i < texts; ++i) at.quoted_text("a text");
+    const std::size_t reals = at.checked_count(at.integer("the number of reals"), 2, "the number of reals");
+    for (std::size_t i = 0; i < reals; ++i) at.any_real("a real");
+    const std::int64_t integers = at.integer("the number of integers");
+    std::array<std::int64_t, 3> header{};
+    for (std::int64_t i = 0; i < integers; ++i) {
+      const std::int64_t n = at.integer("an integer");
+      if (i < 3) header[static_cast<std::size_t>(i)] = n;
+    }
+    const std::size_t count = at.checked_count(header[2], 4, "the number of values");
+    const std::size_t width = 8 * at.checked_count(header[1], 8, "the number of components");
+    at.line("the end of the line");
+    for (std::size_t i = 0; i < count; ++i) {
+      at.raw<std::int32_t>("an element number");
+      const std::int64_t nodes = by_node ? at.raw<std::int32_t>("a number of nodes") : 1;
+      at.bytes(width * at.checked_count(nodes, 1, "a number of nodes"), "values");
+    }
+  } catch (const ReadFailure&) {
+    return false;
+  }
+  if (!at.peek_word().starts_with("$End")) return false;
+  f.at.move_to(at.offset());
+  return true;
+}
+
+// Moves behind a section that says nothing a Mesh holds; `end` closes it.
+void skip_section(GmshFile& f, const std::string& name, const std::string& end) {
+  Cursor& at = f.at;
+  if (at.binary() && (name == "$ElementData" || name == "$ElementNodeData"))
+    skip_element_data(f, name == "$ElementNodeData");
+  const std::size_t start = at.offset();
+  // On a line of its own; else, behind binary data, wherever it is.
+  if (at.peek_word() == end) {
+    at.word("the end of the section");
+  } else if (!at.skip_past("\n" + end) && !(at.move_to(start), at.skip_past(end))) {
+    at.fail(join("the section has no ", end), rewrite_file);
+  }
+}
+
+// Skips lines that begin no section, as Gmsh does: its window appends commands to the file that is open. The
+// next section, "" at the end of the file.
+std::string next_section(GmshFile& f) {
+  Cursor& at = f.at;
+  for (;;) {
+    at.skip_space();
+    if (at.at_end()) return {};
+    if (at.peek_word().starts_with("$")) {
+      const std::string name(at.word("a section"));
+      if (name.size() < 2) at.fail("a section has no name", rewrite_file);
+      return name;
+    }
+    at.line("a line");
+    ++f.raw.stray_lines;
+  }
+}
+
 // Sections whose body is numbers in a text also in a binary file.
 bool counts_in_text(std::string_view name, int major) {
   return name == "$PhysicalNames" || name == "$NodeData" ||
@@ -212,8 +303,17 @@ RawMesh read_gmsh(std::string_view content, const std::string& file) {
   GmshFile f{Cursor(content, file), {}, {}, 8, false, {}};
   f.raw.file = file;
   Cursor& at = f.at;
-  const std::string_view first = at.word("$MeshFormat");
-  if (first != "$MeshFormat") {
+  // Comments may come before it.
+  const std::string_view first = at.peek_word();
+  std::string opening = next_section(f);
+  while (!opening.empty() && opening != "$MeshFormat" && opening != "$NOD" &&
+         at.rest().find("$MeshFormat") != std::string_view::npos) {
+    skip_section(f, opening, "$End" + opening.substr(1));
+    opening = next_section(f);
+  }
+  if (opening != "$MeshFormat") {
+    at.move_to(0);
+    at.word("$MeshFormat");
     at.fail(join("the file begins with ", quoted(first), " instead of $MeshFormat"),
             "Gmsh format 1 is not read: save with 'gmsh -format msh41'");
   }
@@ -222,18 +322,11 @@ RawMesh read_gmsh(std::string_view content, const std::string& file) {
   std::string name = "$MeshFormat";
   for (;;) {
     const std::string end = "$End" + name.substr(1);
-    if (at.peek_word() == end) {
-      at.word("the end of the section");
-    } else if (known) {
+    if (known && at.peek_word() != end)
       at.fail(join(end, " was expected, not ", quoted(at.peek_word())), "correct the counts of the section");
-    } else if (!at.skip_past("\n" + end)) {
-      at.fail(join("the section has no ", end), rewrite_file);
-    }
-    if (at.peek_word().empty()) break;
-    name = std::string(at.word("a section"));
-    if (name.size() < 2 || name[0] != '$') {
-      at.fail(join("a section such as $Nodes was expected, not ", quoted(name)), rewrite_file);
-    }
+    skip_section(f, name, end);
+    name = next_section(f);
+    if (name.empty()) break;
     at.set_section(name);
     if (!counts_in_text(name, major) || at.binary()) at.line("the section");
     known = read_section(f, name, major);
@@ -244,6 +337,7 @@ RawMesh read_gmsh(std::string_view content, const std::string& file) {
   if (!f.has_nodes || !has_elements) {
     at.fail(join("the file has no section ", f.has_nodes ? "$Elements" : "$Nodes"), rewrite_file);
   }
+  f.name_entities();
   return std::move(f.raw);
 }
 

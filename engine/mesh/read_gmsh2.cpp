@@ -23,7 +23,7 @@ void add(GmshFile& f, CellOrigin& origin, const GmshType& type, std::int64_t lab
          std::span<const std::int64_t> tags, std::span<const Index> nodes) {
   const std::size_t cells = f.raw.cell_label.size();
   const std::vector<std::int64_t> groups = groups_of(tags.empty() ? 0 : tags[0]);
-  f.add_element(type, label, groups, nodes);
+  f.add_element(type, label, groups, tags.size() > 1 ? tags[1] : 0, nodes);
   if (f.raw.cell_label.size() > cells) origin.entity.push_back(tags.size() > 1 ? tags[1] : 0);
 }
 

@@ -124,7 +124,7 @@ void read_elements4(GmshFile& f) {
       for (int k = 0; k < type.nodes; ++k) {
         nodes[static_cast<std::size_t>(k)] = f.node(read_size(f, "a node number"));
       }
-      f.add_element(type, label, groups, {nodes.data(), static_cast<std::size_t>(type.nodes)});
+      f.add_element(type, label, groups, entity, {nodes.data(), static_cast<std::size_t>(type.nodes)});
     }
     seen += in_block;
   }

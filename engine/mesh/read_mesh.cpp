@@ -7,6 +7,7 @@
 #include <memory>
 #include <new>
 
+#include "engine/mesh/foreign_format.h"
 #include "engine/mesh/readers.h"
 #include "isochor/mesh_io.h"
 
@@ -59,26 +60,36 @@ std::string_view without_comments(std::string_view content) {
 }
 
 RawMesh read_any(const std::string& file) {
-  const std::string extension = std::filesystem::path(file).extension().string();
+  std::string extension = std::filesystem::path(file).extension().string();
+  for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
   const std::string content = load_file(file);
   if (content.find_first_not_of(" \t\r\n") == content.npos) {
     throw ReadFailure{file + ": the file is empty; export the mesh again"};
   }
   if (content.starts_with("# vtk DataFile")) return read_vtk_legacy(content, file);
   const std::string_view word = first_word(without_comments(content));
-  if (word.starts_with("$")) return read_gmsh(content, file);
+  // Gmsh's word may come late: lines before it are skipped.
+  const bool gmsh = content.starts_with("$MeshFormat") || content.find("\n$MeshFormat") != content.npos ||
+                    word == "$NOD" || word.starts_with("$MeshFormat");
+  const bool medit = word == "MeshVersionFormatted";
+  const bool tetgen = extension == ".node" || extension == ".ele" || extension == ".face";
+  if (!gmsh && is_abaqus(content)) return read_abaqus(content, file);
+  if (!gmsh && !medit && !tetgen) {
+    if (const auto what = foreign_format(content, extension, file); !what.empty())
+      throw ReadFailure{file + ": " + what};
+  }
+  if (gmsh || word.starts_with("$")) return read_gmsh(content, file);
   if (word.starts_with("<") || word.starts_with("\xEF\xBB\xBF<")) return read_vtu(content, file);
-  if (word == "MeshVersionFormatted") return read_medit(content, file);
+  if (medit) return read_medit(content, file);
   // Numbers only: nothing in the content tells TetGen's files apart.
-  if (extension == ".node" || extension == ".ele" || extension == ".face") return read_tetgen(file);
+  if (tetgen) return read_tetgen(file);
   if (extension == ".msh") return read_gmsh(content, file);
   if (extension == ".vtk") return read_vtk_legacy(content, file);
   if (extension == ".vtu") return read_vtu(content, file);
   if (extension == ".mesh" || extension == ".meshb") return read_medit(content, file);
-  throw ReadFailure{
-      join(file, ": the file begins with ", quoted(first_word(content)),
-           ", which is no known mesh format; supported are Gmsh .msh (2.2, 4.1), VTK .vtk and .vtu, "
-           "TetGen .node/.ele and Medit .mesh")};
+  throw ReadFailure{join(file, ": the file begins with ", quoted(first_word(content)),
+                         ", which is no known mesh format; read are Gmsh .msh (2.2, 4.1), VTK .vtk and .vtu, "
+                         "TetGen .node/.ele, Medit .mesh and Abaqus .inp: convert it with 'meshio convert'")};
 }
 
 }  // namespace

@@ -16,6 +16,9 @@ RawMesh read_vtk_legacy(std::string_view content, const std::string& file);
 RawMesh read_vtu(std::string_view content, const std::string& file);
 // Medit, ASCII.
 RawMesh read_medit(std::string_view content, const std::string& file);
+// Abaqus and CalculiX decks.
+bool is_abaqus(std::string_view content);
+RawMesh read_abaqus(std::string_view content, const std::string& file);
 // TetGen: `file` is the .node or the .ele file; the others lie beside it.
 RawMesh read_tetgen(const std::string& file);
 

@@ -205,6 +205,21 @@ struct TractionDef {
 };
 EffectPtr traction(TractionDef def);
 
+// Pressure that follows the faces it acts on: the force -p n per present area, n out of the body, so that
+// a positive amount pushes inward. The faces are any part of the boundary, closed or not (a chamber whose
+// volume matters is a cavity).
+struct PressureDef {
+  std::string name = "pressure";
+  BodyId body{};
+  std::vector<std::string> surfaces;  // their winding does not matter; a face named twice counts once
+  Curve amount = Curve::constant(1);  // [Pa]
+  // At a free rim the load has no potential and its tangent is unsymmetric, which linear systems then are.
+  // True: what the rim adds is held within an iteration, so that they stay symmetric, and convergence is
+  // linear there. Needed by continuation(), by the iterative solver and by methods of dual problems.
+  bool lagged = false;
+};
+EffectPtr pressure(PressureDef def);
+
 // Dead force [N], shared equally by the selected nodes.
 struct PointForceDef {
   std::string name = "force";

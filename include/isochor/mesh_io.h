@@ -16,7 +16,7 @@ struct MeshReadOptions {
 };
 
 // Reads Gmsh 2.2 and 4.1 (.msh, ASCII and binary), VTK legacy (.vtk), VTK XML (.vtu), TetGen (.node/.ele with
-// optional .face) and Medit (.mesh). The format is told from the content first, the extension second.
+// optional .face), Medit (.mesh) and Abaqus (.inp, one part). The format is told from the content first, the extension second.
 // Inverted cells are turned over; everything else is left for check_mesh.
 Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options = {});
 
@@ -31,11 +31,21 @@ struct MeshFinding {
   std::vector<std::int64_t> examples;
 };
 
+// A closed part of the boundary: what surrounds the body ("outer"), or an inner surface that encloses a void
+// ("chamber 1", "chamber 2", ... in the order of the cells). Every body has these surfaces, unless its mesh
+// has one of the same name.
+struct BoundaryPart {
+  MeshSurface surface;  // wound outward, seen from the cells
+  double volume = 0;    // enclosed [m^3]; of "outer" that of the body with its chambers
+  bool taken = false;   // a surface of the mesh has this name
+};
+
 struct MeshReport {
   Index nodes = 0, cells = 0, parts = 0;  // parts: connected components of cells
   double volume = 0;                      // [m^3]
   std::array<Vec3, 2> box{};              // lower and upper corner [m]
   double worst_quality = 0, smallest_dihedral_deg = 0;
+  std::vector<BoundaryPart> boundary;  // empty when arrays contradict each other
   std::vector<MeshFinding> findings;
   bool usable() const;  // no finding is an error
 };

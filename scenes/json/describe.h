@@ -113,10 +113,50 @@ void describe(Io& io, MeshSource& m) {
 }
 
 template <class Io>
+void describe(Io& io, PlanePlace& p) {
+  io.vector("point", p.point, Vec3{});
+  io.required_vector("normal", p.normal);
+}
+
+template <class Io>
+void describe(Io& io, SpherePlace& s) {
+  io.required_vector("center", s.center);
+  io.number("radius", s.radius, 0.0);
+}
+
+template <class Io>
+void describe(Io& io, SeedPlace& s) {
+  io.required_vector("point", s.point);
+  io.optional_angle("angle", "angle_deg", s.angle, SeedPlace{}.angle);
+}
+
+template <class Io>
+void describe(Io& io, FacingPlace& f) {
+  io.required_vector("direction", f.direction);
+  io.optional_angle("angle", "angle_deg", f.angle, FacingPlace{}.angle);
+}
+
+template <class Io>
+void describe(Io& io, MeshSelection& s) {
+  io.required_text("name", s.name);
+  io.names("of", s.of);
+  io.optional_box("box", s.box);
+  io.maybe_object("plane", s.plane);
+  io.maybe_object("sphere", s.sphere);
+  io.maybe_object("facing", s.facing);
+  io.maybe_object("seed", s.seed);
+  io.text("file", s.file);
+  io.number("scale", s.scale, 1.0);
+  io.number("tolerance", s.tolerance, 0.0);
+}
+
+template <class Io>
 void describe(Io& io, SceneBody& b) {
   io.required_text("name", b.name);
   MeshSource mesh{b.mesh};
   io.object("mesh", mesh);
+  io.list("surfaces", b.surfaces);
+  io.list("node_sets", b.node_sets);
   io.word("element", b.element, Element::tet4_edge_smoothed);
   io.list("materials", b.materials);
   io.optional_number("guard_stiffness", b.guard_stiffness);
@@ -341,6 +381,15 @@ void describe(Io& io, TractionDef& t) {
 }
 
 template <class Io>
+void describe(Io& io, PressureDef& p) {
+  io.required_text("name", p.name);
+  io.body("body", p.body);
+  io.names("surfaces", p.surfaces);
+  io.required_curve("amount", p.amount, CurveStart::zero);
+  io.flag("lagged", p.lagged, false);
+}
+
+template <class Io>
 void describe(Io& io, PointForceDef& f) {
   io.required_text("name", f.name);
   io.object("where", f.where);
@@ -452,6 +501,7 @@ void describe(Io& io, SceneDef& s) {
   io.list("dirichlet", s.dirichlet);
   io.list("cavities", s.cavities);
   io.list("tractions", s.tractions);
+  io.list("pressures", s.pressures);
   io.list("forces", s.forces);
   io.list("damping", s.damping);
   io.list("epidermis", s.epidermis);

@@ -34,6 +34,10 @@ class KeyList {
     add(radians, "number");
     add(degrees, "number");
   }
+  void optional_angle(const char* radians, const char* degrees, double& value, double) {
+    angle(radians, degrees, value);
+  }
+  void optional_box(const char* key, std::optional<std::array<Vec3, 2>>&) { add(key, "points"); }
   void body(const char* key, BodyId&) { add(key, "text"); }
   void optional_body(const char* key, std::optional<BodyId>&) { add(key, "text"); }
   void curve(const char* key, Curve&, CurveStart, bool) { add(key, "curve"); }
@@ -62,6 +66,11 @@ class KeyList {
   }
   template <class T>
   void optional_object(const char* key, T& value, bool) {
+    object(key, value);
+  }
+  template <class T>
+  void maybe_object(const char* key, std::optional<T>&) {
+    T value;
     object(key, value);
   }
   template <class T>

@@ -240,19 +240,27 @@ void Reader::points(const char* key, std::vector<Vec3>& value) {
   }
 }
 
+bool Reader::read_box(const Json& j, const std::string& where, std::array<Vec3, 2>& value) {
+  if (!j.is_array() || j.size() != 2) {
+    fail_type(where, "two corners [[x, y, z], [x, y, z]]", j);
+    return false;
+  }
+  for (std::size_t c = 0; c < 2; ++c) {
+    if (!read_vector(j[c], where + "[" + std::to_string(c) + "]", value[c])) return false;
+  }
+  return true;
+}
+
 void Reader::boxes(const char* key, std::vector<std::array<Vec3, 2>>& value) {
   const Json* j = find(key);
   if (!j || !expect_list(*j, key)) return;
   for (std::size_t i = 0; i < j->size(); ++i) {
-    const std::string where = at(key) + "[" + std::to_string(i) + "]";
-    const Json& box = (*j)[i];
-    if (!box.is_array() || box.size() != 2)
-      return fail_type(where, "two corners [[x, y, z], [x, y, z]]", box);
-    auto& corners = value.emplace_back();
-    for (std::size_t c = 0; c < 2; ++c) {
-      if (!read_vector(box[c], where + "[" + std::to_string(c) + "]", corners[c])) return;
-    }
+    if (!read_box((*j)[i], at(key) + "[" + std::to_string(i) + "]", value.emplace_back())) return;
   }
+}
+
+void Reader::optional_box(const char* key, std::optional<std::array<Vec3, 2>>& value) {
+  if (const Json* j = find(key)) read_box(*j, at(key), value.emplace());
 }
 
 void Reader::read_direction(const Json& j, const std::string& where, std::vector<Vec3>& value) {
@@ -288,6 +296,12 @@ void Reader::angle(const char* radians, const char* degrees, double& value) {
     read_number(*r, at(radians), value);
   else if (read_number(*d, at(degrees), value))
     value *= std::numbers::pi / 180;
+}
+
+void Reader::optional_angle(const char* radians, const char* degrees, double& value, double) {
+  const bool given = json_.is_object() && (json_.contains(radians) || json_.contains(degrees));
+  if (given) return angle(radians, degrees, value);
+  known_.insert(known_.end(), {radians, degrees});
 }
 
 void Reader::body(const char* key, BodyId& value) {

@@ -54,6 +54,8 @@ class Reader {
   void boxes(const char* key, std::vector<std::array<Vec3, 2>>& value);
   void directions(const char* key, std::vector<Vec3>& value);  // "xz", or vectors
   void angle(const char* radians, const char* degrees, double& value);
+  void optional_angle(const char* radians, const char* degrees, double& value, double standard);
+  void optional_box(const char* key, std::optional<std::array<Vec3, 2>>& value);
   void body(const char* key, BodyId& value);
   void optional_body(const char* key, std::optional<BodyId>& value);
   void curve(const char* key, Curve& value, CurveStart start, bool matters);
@@ -89,6 +91,10 @@ class Reader {
   template <class T>
   void optional_object(const char* key, T& value, bool) {
     if (const Json* j = find(key)) read_object(*j, at(key), value);
+  }
+  template <class T>
+  void maybe_object(const char* key, std::optional<T>& value) {
+    if (const Json* j = find(key)) read_object(*j, at(key), value.emplace());
   }
   template <class T>
   void list(const char* key, std::vector<T>& value) {
@@ -136,6 +142,7 @@ class Reader {
   bool read_number(const Json& j, const std::string& where, double& value);
   bool read_integer(const Json& j, const std::string& where, int& value);
   bool read_vector(const Json& j, const std::string& where, Vec3& value);
+  bool read_box(const Json& j, const std::string& where, std::array<Vec3, 2>& value);
   void read_curve(const Json& j, const std::string& where, Curve& value, CurveStart start);
   void read_plain_curve(double end, Curve& value, CurveStart start) const;
   void read_direction(const Json& j, const std::string& where, std::vector<Vec3>& value);

@@ -64,6 +64,12 @@ class Writer {
   void boxes(const char* key, const std::vector<std::array<Vec3, 2>>& value);
   void directions(const char* key, const std::vector<Vec3>& value);
   void angle(const char* radians, const char*, double value) { json_[radians] = plain_number(value); }
+  void optional_angle(const char* radians, const char*, double value, double standard) {
+    number(radians, value, standard);
+  }
+  void optional_box(const char* key, const std::optional<std::array<Vec3, 2>>& value) {
+    if (value) json_[key] = Json::array({list_of((*value)[0]), list_of((*value)[1])});
+  }
   void body(const char* key, BodyId value);
   void optional_body(const char* key, const std::optional<BodyId>& value);
   void curve(const char* key, const Curve& value, CurveStart start, bool matters) {
@@ -94,6 +100,10 @@ class Writer {
   template <class T>
   void optional_object(const char* key, T& value, bool present) {
     if (present) write(json_[key], value);
+  }
+  template <class T>
+  void maybe_object(const char* key, std::optional<T>& value) {
+    if (value) write(json_[key], *value);
   }
   template <class T>
   void list(const char* key, std::vector<T>& value) {

@@ -4,7 +4,7 @@
 
 #include "constraints/patch_distance.h"
 #include "constraints/skin.h"
-#include "constraints/triangle.h"
+#include "engine/triangle.h"
 #include "support/worlds.h"
 
 namespace {

@@ -106,7 +106,9 @@ TEST_CASE("forces of pools that couple change with what they hold on to as these
       CHECK(lag_size > 1e-5 * size);
     else
       lag_size = 1e-2 * size;
-    CHECK(row_lag_size > 1e-3 * row_size);
+    // A load that is given couples positions alone.
+    const bool has_rows = !c.lambda.empty();
+    if (has_rows) CHECK(row_lag_size > 1e-3 * row_size);
     double best = 1, best_row = 1;
     for (double h = 1e-4; h > 1e-9; h /= 10) {
       auto up = c.lambda, down = c.lambda;
@@ -126,7 +128,7 @@ TEST_CASE("forces of pools that couple change with what they hold on to as these
       best_row = std::min(best_row, row_error / row_lag_size);
     }
     CHECK(best < 1e-5);
-    CHECK(best_row < 1e-7);
+    if (has_rows) CHECK(best_row < 1e-7);
   });
   CHECK(turning > 12);
 }
@@ -212,6 +214,7 @@ TEST_CASE("pools that couple answer without allocating, and to the same bits") {
     CHECK(count == 0);
     CHECK(first == second);
     // Where nothing presses there is nothing to couple.
+    std::fill(c.prescribed.begin(), c.prescribed.end(), 0.0);
     c.evaluate(Want::gradient, c.scene.x(), std::vector<double>(c.lambda.size(), 0));
     c.part.evaluate(c.assembly, c.scene.x());
     CHECK(c.part.vanishes());

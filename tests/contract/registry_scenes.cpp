@@ -161,6 +161,36 @@ void add_cavities(std::vector<SceneCase>& out) {
   }
 }
 
+// On all of a chamber; and on two sides of a solid, with a free rim that is lagged or part of the system.
+void add_pressures(std::vector<SceneCase>& out) {
+  for (const auto& [element, name] : kElements) {
+    isochor::PressureDef def;
+    def.amount = Curve::constant(0.3);
+    SceneCase c{name,
+                {"constraints/pressure", "constraints/surface_nodes", "constraints/surface_pool"},
+                {},
+                element,
+                {{"", material(0.3), 1000}},
+                {}};
+    c.stress_free = false;
+    const auto smaller = [](const Vec3& p) { return wavy((1.0 / 3) * p); };
+    def.surfaces = {"chamber"};
+    c.name = name + ", pressure in a chamber";
+    c.mesh = mapped(hollow_box(false, cells_of(element)), smaller);
+    c.effects = {isochor::pressure(def)};
+    out.push_back(c);
+    c.rigid_invariant = false;
+    c.mesh = solid_mesh(element);
+    def.surfaces = {"z1", "x1"};
+    for (const bool lagged : {false, true}) {
+      def.lagged = lagged;
+      c.name = name + ", pressure on open faces" + (lagged ? ", lagged" : "");
+      c.effects = {isochor::pressure(def)};
+      out.push_back(c);
+    }
+  }
+}
+
 void add_supports_and_loads(std::vector<SceneCase>& out) {
   SceneCase c{
       "supports",    {"constraints/dirichlet"},   solid_mesh(Element::tet4),
@@ -286,6 +316,7 @@ std::vector<SceneCase> scene_cases() {
   std::vector<SceneCase> out;
   add_volumes(out);
   add_cavities(out);
+  add_pressures(out);
   add_supports_and_loads(out);
   add_damping(out);
   add_fields(out);

@@ -69,6 +69,38 @@ TEST_CASE("mesh: damaged small files", "[mesh][fuzz]") {
   fuzz(dir, "f.vtu", packed_vtu(dir));
 }
 
+// More than a mesh: data on elements, lines of no section, faces of no group.
+TEST_CASE("mesh: damaged files with other sections", "[mesh][fuzz]") {
+  const TempDir dir;
+  std::string data = "$ElementNodeData\n1\n\"strain\"\n1\n0\n3\n0\n1\n3\n";
+  for (std::int32_t i = 0; i < 3; ++i) {
+    for (const std::int32_t n : {i + 1, 2}) data.append(reinterpret_cast<const char*>(&n), 4);
+    data += "0123456789abcdef";
+  }
+  for (const char* name : {"block_msh22_binary_order1.msh", "block_msh41_binary_order1.msh"}) {
+    const std::string content =
+        load((data_directory() / name).string()) + data + "$EndElementNodeData\n//+\n";
+    truncate_everywhere(dir, name, content, 97 + content.size() / 100);
+    flip_bytes(dir, name, content, 100);
+    // Damage in the section alone.
+    for (std::size_t at = content.size() - data.size() - 26; at < content.size(); ++at) {
+      std::string damaged = content;
+      damaged[at] = static_cast<char>('0' + at % 10);
+      CAPTURE(name, at);
+      must_survive(dir.write(name, damaged));
+    }
+  }
+  const std::string two =
+      "//+\n" + replaced(gmsh22_text(), "2 2 2 5 1 2 3 4", "2 2 2 0 8 2 3 4") + "Show \"*\";\n";
+  fuzz(dir, "a.msh", two);
+  fuzz(dir, "b.inp",
+       "*HEADING\n*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*ELEMENT, TYPE=C3D4, ELSET=e\n1, 1, "
+       "2, 3, 4\n"
+       "*NSET, NSET=a\n1, 2, a\n*ELSET, ELSET=f, GENERATE\n1, 1, 1\n*SURFACE, NAME=s\nf, S1\n*SOLID SECTION, "
+       "ELSET=f\n");
+  fuzz(dir, "c.feb", "<?xml version=\"1.0\"?>\n<febio_spec version=\"3.0\">\n<Mesh/></febio_spec>\n");
+}
+
 TEST_CASE("mesh: damaged TetGen files", "[mesh][fuzz]") {
   const TempDir dir;
   const std::string nodes = "4 3 1 1\n1 0 0 0 5 1\n2 1 0 0 5 1\n3 0 1 0 5 1\n4 0 0 1 5 0\n";

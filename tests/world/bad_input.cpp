@@ -282,3 +282,70 @@ TEST_CASE("after the first step nothing can be added, and amounts are checked") 
   CHECK_THAT(refusal(d.world.set_amount(static_cast<EffectId>(-1), 1)),
              ContainsSubstring("no effect number -1"));
 }
+
+TEST_CASE("what a support holds, and the motions that it leaves") {
+  const auto held_at = [](std::vector<Vec3> nearest, const Vec3& size) {
+    Draft d(0.45, Element::tet4, static_options(), block({0, 0, 0}, size, {3, 2, 2}));
+    DirichletDef def;
+    def.name = "peg";
+    def.where.nearest = std::move(nearest);
+    value(d.world.add(dirichlet(def)));
+    return d.compiled();
+  };
+  const std::string one = held_at({{0.3, 0.2, 0}}, {0.3, 0.2, 0.2});
+  CHECK_THAT(one, ContainsSubstring("rotation about x, y and z through (0.3, 0.2, 0) m") &&
+                      ContainsSubstring("support \"peg\" holds 1 node of it") &&
+                      !ContainsSubstring("translation"));
+  // Two nodes leave the line through them, whichever way it runs.
+  const std::string two = held_at({{0, 0, 0}, {0.3, 0.2, 0}}, {0.3, 0.2, 0.2});
+  CHECK_THAT(two,
+             ContainsSubstring("holds 2 nodes") && ContainsSubstring("0.832") && ContainsSubstring("0.5547"));
+  CHECK_THAT(held_at({{0, 0, 0}, {0, 0.2, 0}}, {0.3, 0.2, 0.2}),
+             ContainsSubstring("against rotation about y through (0, ") && ContainsSubstring(", 0) m"));
+  // The units are said once, by the message that ends the attempt.
+  const std::string millimeters = held_at({{0, 0, 0}}, {120, 20, 20});
+  const auto units = millimeters.find("scale 0.001");
+  CHECK(units != std::string::npos);
+  CHECK(millimeters.find("scale 0.001", units + 1) == std::string::npos);
+  CHECK(held_at({{0, 0, 0}}, {0.3, 0.2, 0.2}).find("units") == std::string::npos);
+}
+
+TEST_CASE("of several parts the one that nothing holds is told by its place") {
+  Mesh mesh = block({0, 0, 0}, {0.1, 0.1, 0.1}, {1, 1, 1});
+  const Mesh far = block({0.5, 0, 0}, {0.7, 0.1, 0.1}, {2, 1, 1});
+  const Index first = mesh.node_count();
+  mesh.nodes.insert(mesh.nodes.end(), far.nodes.begin(), far.nodes.end());
+  for (const Index n : far.cells) mesh.cells.push_back(first + n);
+  Draft d(0.45, Element::tet4, static_options(), mesh);
+  hold(d.world, d.body, {"x0"});
+  CHECK_THAT(d.compiled(),
+             ContainsSubstring("one of its parts (12 nodes from (0.5, 0, 0) to (0.7, 0.1, 0.1) m)") &&
+                 ContainsSubstring("translation along x, y and z and rotation about x, y and z") &&
+                 ContainsSubstring("no support holds a node of it"));
+}
+
+TEST_CASE("two materials for one region are refused by number and name") {
+  const auto refused = [](std::vector<std::string> regions) {
+    World world = make_world(static_options());
+    BodyDef def;
+    def.mesh = block({0, 0, 0}, {1, 1, 1}, {1, 1, 1});
+    for (const std::string& region : regions) def.materials.push_back({region, neo_hookean(1e5, 0.45), 1000});
+    return refusal(world.add_body(def));
+  };
+  CHECK_THAT(refused({"", ""}), ContainsSubstring("materials 0 and 1") && ContainsSubstring("all regions"));
+  CHECK_THAT(refused({"", "body", "body"}),
+             ContainsSubstring("materials 1 and 2") && ContainsSubstring("\"body\""));
+  CHECK(refused({"", "body"}) == "accepted");
+}
+
+TEST_CASE("a mesh too large for memory is refused with its size before it is made") {
+  BoxMeshDef def;
+  def.divisions = {1000, 1000, 1000};
+  for (const CellType type : {CellType::tet4, CellType::tet10, CellType::hex8}) {
+    def.cell_type = type;
+    const auto made = box_mesh(def);
+    REQUIRE_FALSE(made.ok());
+    CHECK_THAT(made.error(), ContainsSubstring("1000 x 1000 x 1000") || ContainsSubstring("1000000000"));
+    CHECK_THAT(made.error(), ContainsSubstring("use"));
+  }
+}
