@@ -24,6 +24,8 @@ std::string number(double v) {
 
 // Of the layer that stands for a hard contact, over the size of a face.
 constexpr double kLayer = 0.02;
+// Pressure up to which that layer is linear, over the shear modulus of the softer body.
+constexpr double kKnee = 0.1;
 
 class SurfaceContactInstance final : public EffectInstance {
  public:
@@ -196,9 +198,11 @@ class SurfaceContactEffect final : public EffectSource {
     const double softer = std::min(mu[0], mu[1]);
     auto rows = std::make_shared<ContactRows>(def_.name, def_.resolve_time);
     const double layer = def_.compliance.value_or(kLayer * setup->skin->size() / softer);
+    const double knee = def_.compliance ? std::numeric_limits<double>::infinity() : kKnee * softer;
     for (const SkinPoint& p : setup->skin->points()) {
       // Both sides carry half of the pressure.
       rows->add(softer, p.area, builder.length(), 2 * layer);
+      if (!def_.compliance) rows->knee.push_back(0.5 * p.area * knee);
       setup->stick.push_back(def_.stick_stiffness > 0 ? 0.5 * def_.stick_stiffness * p.area
                                                       : 50 * softer * p.area / setup->skin->size());
     }
@@ -212,7 +216,7 @@ class SurfaceContactEffect final : public EffectSource {
     rows->largest_overshoot = 0.25 * setup->skin->size();
     rows->stencil_pool = builder.add_stencils(pool);
     const Index row_pool = builder.add_rows(rows);
-    auto edges = EdgeContact::build(builder, def_, *setup->skin, layer, softer);
+    auto edges = EdgeContact::build(builder, def_, *setup->skin, {layer, knee, softer});
     if (!edges) return Error{edges.error()};
     return std::unique_ptr<EffectInstance>(
         std::make_unique<SurfaceContactInstance>(rows, row_pool, setup->skin, std::move(edges).value()));
