@@ -84,6 +84,17 @@ bool Newton::descends(const SaddleProblem& p, std::span<const Vec3> x, std::span
   return moderate && slope <= 1e-12 * potential_magnitude(p, x);
 }
 
+// Surfaces that press on each other hard, from equal bodies, are in equilibrium as they lie and yet would
+// slip off each other at their borders. Which branch a host wants is told by where the last step was: a
+// direction that goes downhill as it is, whatever the inertia, stays on it.
+bool Newton::descend_unmended(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
+                              SaddleReport& report) {
+  mended_ = false;
+  if (factor_shifted(p.mass_scale, 0, report)) return direction(lambda, report);
+  return report.status == SaddleStatus::converged && !singular_ && report.negative_pivots >= 0 &&
+         direction(lambda, report) && descends(p, x, lambda);
+}
+
 // The ladder of factor(), for directions that do not descend or were not found.
 bool Newton::mend_direction(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
                             SaddleReport& report) {
@@ -565,10 +576,15 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     if ((iteration == 0 || s.has_lag()) && balanced(p, options, x, lambda, report)) return report;
     if (s.has_bounds()) choose_clamped(lambda, iteration == 0);
     if (!s.laws().empty()) apply_laws(p, lambda, true);
-    if (!factor(p, x, lambda, report)) {
-      return fail(report.status == SaddleStatus::converged ? SaddleStatus::singular : report.status);
+    bool found = false;
+    if (s.has_followers() && p.mass_scale == 0) found = descend_unmended(p, x, lambda, report);
+    if (!found && report.status == SaddleStatus::out_of_memory) return fail(report.status);
+    if (!found) {
+      if (!factor(p, x, lambda, report)) {
+        return fail(report.status == SaddleStatus::converged ? SaddleStatus::singular : report.status);
+      }
+      found = direction(lambda, report);
     }
-    bool found = direction(lambda, report);
     if (!found && kkt_.inertia_was_wrong()) found = factor(p, x, lambda, report) && direction(lambda, report);
     // A backend that cannot tell the inertia is judged by its directions.
     if (report.negative_pivots < 0 && !(found && descends(p, x, lambda))) {

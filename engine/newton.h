@@ -36,6 +36,8 @@ class Newton : public SaddlePoint {
   void begin_search(const SaddleOptions& options);  // of a solve
   bool left_all_bounds(std::span<const Vec3> x) const;
   bool descends(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda);
+  bool descend_unmended(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
+                        SaddleReport& report);
   bool mend_direction(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
                       SaddleReport& report);
   double longest_step(double tau);
