@@ -23,9 +23,9 @@ std::string number(double v) {
 }
 
 // Of the layer that stands for a hard contact, over the size of a face.
-constexpr double kLayer = 0.02;
+constexpr double kLayer = 0.001;
 // Pressure up to which that layer is linear, over the shear modulus of the softer body.
-constexpr double kKnee = 0.1;
+constexpr double kKnee = 4;
 
 class SurfaceContactInstance final : public EffectInstance {
  public:
