@@ -36,11 +36,13 @@ class ContactInstance final : public EffectInstance {
     const auto memory = memory_of(c);
     Vec3 force{};
     double normal = 0, tangential = 0, area = 0, pressure = 0, gap = std::numeric_limits<double>::infinity();
+    double depth = 0;
     for (Index s = 0; s < pool_->stencils(); ++s) {
       gap = std::min(gap, pool_->gap(s, frame, c.state.x));
       if (!(lambda[at(s)] < 0)) continue;
       normal -= lambda[at(s)];
       area += rows_->area[at(s)];
+      depth = std::max(depth, rows_->depth(s, lambda[at(s)]) / std::sqrt(rows_->area[at(s)]));
       pressure = std::max(pressure, -lambda[at(s)] / rows_->area[at(s)]);
       const Distance d = distance_to(pool_->shape(), pool_->own_place(s, frame, c.state.x));
       force -= lambda[at(s)] * (frame.A * d.normal);
@@ -61,6 +63,7 @@ class ContactInstance final : public EffectInstance {
     put("contact_area", "m2", area);
     put("largest_pressure", "Pa", pressure);
     put("smallest_gap", "m", gap);
+    put("depth_over_face", "", depth);
   }
 
   bool surface_forces(const GaugeContext& c, SurfaceForces& f) const override {

@@ -44,6 +44,9 @@ class ContactRows : public RowPool {
   double evaluate_law(const RowIncrement& increment, std::span<const double> lambda, std::span<double> strain,
                       std::span<double> tangent) const override;
 
+  // How far the layer of a row gives way under its multiplier [m], zero or more.
+  double depth(Index row, double multiplier) const;
+
   std::vector<double> area;     // [m^2]
   std::vector<double> knee;     // force up to which the layer is linear [N]; empty: it is so always
   std::vector<double> overlap;  // gap at the start where it is below zero, else zero [m]; empty: none is

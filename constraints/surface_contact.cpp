@@ -48,6 +48,7 @@ class SurfaceContactInstance final : public EffectInstance {
     const auto& points = pool.setup().skin->points();
     Vec3 force{};
     double normal = 0, tangential = 0, area = 0, gap = std::numeric_limits<double>::infinity();
+    double depth = 0;
     for (Index s = 0; s < pool.stencils(); ++s) {
       if (!pool.close(s)) continue;
       const PatchPoint near = pool.nearest(s, c.state.x);
@@ -59,6 +60,7 @@ class SurfaceContactInstance final : public EffectInstance {
       const double sign = points[at(s)].side == 0 ? 1 : -1;
       if (!pool.setup().skin->single()) force += sign * (l * near.normal - pull);
       normal += l;
+      depth = std::max(depth, rows_->depth(s, -l) / skin_->size());
       tangential += std::sqrt(dot(pull, pull));
       area += 0.5 * rows_->area[at(s)];
     }
@@ -85,6 +87,7 @@ class SurfaceContactInstance final : public EffectInstance {
     put("contact_area", "m2", area);
     put("largest_pressure", "Pa", pressure);
     put("smallest_gap", "m", gap);
+    put("depth_over_face", "", depth);
   }
 
   bool surface_forces(const GaugeContext& c, SurfaceForces& f) const override {

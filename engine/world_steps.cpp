@@ -415,8 +415,12 @@ StepReport World::advance(double h) {
       report.reason +=
           "; increments shrank to " + number(increment / h) +
           " of the step, the last equilibrium is at t = " + number(w.state.t) +
-          ": there may be none beyond (a limit point, or a load that nothing can carry), or none "
-          "that this method reaches; try more steps, another method, or continuation() in statics";
+          (w.system->has_bounds()
+               ? ": the solver found no way on, which where things touch need not mean that there is none; "
+                 "more "
+                 "steps, finer or rounder surfaces may help"
+               : ": there may be none beyond (a limit point, or a load that nothing can carry), or none "
+                 "that this method reaches; try more steps, another method, or continuation() in statics");
     }
     break;
   }
