@@ -62,7 +62,8 @@ Index ContactPool::passing(const StencilIncrement& increment, std::span<const Ve
 }
 
 double ContactPool::entry(double t0, double t1, std::span<const Vec3> from, std::span<const Vec3> x) const {
-  constexpr double most = 0.5;  // of a cell
+  // Of a cell: next to a side, where a node that is pushed may slip off, more of the way counts.
+  constexpr double most = 0.5, most_at_side = 0.1;
   if (points_ || shape_.shape == ObstacleShape::plane || shape_.motion.keys.empty()) return 0;
   const ContactFrame before = frame(t0, x), now = frame(t1, x);
   if (same_pose(before, now)) return 0;
@@ -74,11 +75,13 @@ double ContactPool::entry(double t0, double t1, std::span<const Vec3> from, std:
     if (end > norm(y1 - y0)) continue;
     Vec3 met{};
     double way = 0;
-    if (passes_through(shape_, y0, y1, met) || meets_elsewhere(s, y0, y1, met))
-      way = norm(y1 - met);
+    if (passes_through(shape_, y0, y1, met))
+      way = norm(y1 - met) / most;
+    else if (meets_elsewhere(s, y0, y1, met))
+      way = norm(y1 - met) / most_at_side;
     else if (end < 0)
-      way = std::min(0.0, distance_value(shape_, y0)) - end;
-    largest = std::max(largest, way / (most * size_[at(s)]));
+      way = (std::min(0.0, distance_value(shape_, y0)) - end) / most;
+    largest = std::max(largest, way / size_[at(s)]);
   }
   return largest;
 }

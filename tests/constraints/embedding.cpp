@@ -56,7 +56,6 @@ TEST_CASE("a tie to hexahedra carries a load as one mesh does") {
       const BodyId b =
           test::add_body(world, test::block({from, 0, 0}, {to, 1, 1}, {cells, 2, 2}, CellType::hex8),
                          Element::hex8, material, 1000, name);
-      test::add_volume(world, b, VolumeSpace::none);
       return b;
     };
     const BodyId first = add(0, tied ? 1.0 : 2.0, tied ? 2 : 4, "first");

@@ -48,14 +48,15 @@ Approach approach(std::uint32_t seed) {
   } else {
     o = test::mesh_obstacle(test::box_surface({3, 3, thick}));
   }
-  o.position = {0.5, 0.5, 0.5 + above};
-  const double way = draw(1.0, 1.8) * kCell;
+  o.position = {0.5, 0.5, 1 + above};
+  // St. Venant-Kirchhoff materials collapse under little more.
+  a.stvk = seed % 3 == 0;
+  const double way = draw(1.0, a.stvk ? 1.2 : 1.8) * kCell;
   // Where sides end over the block, what goes aside may be on either side of what it meets.
   const double drift = shape == 1 || shape == 2 ? 0 : 0.05;
   const Vec3 aside{drift * draw(-1, 1), drift * draw(-1, 1), -way};
   o.motion.keys = {{0, {}, {1, 0, 0, 0}}, {1, aside, {1, 0, 0, 0}}};
   a.hexahedra = seed % 2 == 0;
-  a.stvk = seed % 3 == 0;
   a.text = "seed " + std::to_string(seed) + ", shape " + std::to_string(shape) + ", thickness " +
            std::to_string(thick) + ", way " + std::to_string(way);
   return a;
@@ -67,9 +68,8 @@ std::vector<Vec3> pressed(const Approach& a, int steps) {
   c.young = 1e5;
   c.poisson = 0.3;
   const BodyId body = test::add_body(
-      world, test::block({0, 0, 0}, {1, 1, 0.5}, {6, 6, 3}, a.hexahedra ? CellType::hex8 : CellType::tet4),
+      world, test::block({0, 0, 0}, {1, 1, 1}, {6, 6, 6}, a.hexahedra ? CellType::hex8 : CellType::tet4),
       a.hexahedra ? Element::hex8 : Element::tet4, test::value(a.stvk ? stvk(c) : neo_hookean(c)));
-  test::add_volume(world, body, VolumeSpace::none);
   test::hold(world, body, {"z0"});
   ContactDef def;
   def.body = body;
@@ -112,7 +112,6 @@ TEST_CASE("an obstacle as wide as a body presses it as a wider one does") {
     const BodyId body = test::add_body(
         world, test::mapped(test::block({0, 0, 0}, {1, 0.1, 0.5}, {8, 1, 4}, CellType::hex8), placed),
         Element::hex8, test::neo_hookean(1e5, 0.3));
-    test::add_volume(world, body, VolumeSpace::none);
     test::hold(world, body, {"z0"});
     test::hold(world, body, {"y0", "y1"}, {{-s, c, 0}});
     ContactDef def;
