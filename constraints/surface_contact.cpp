@@ -22,10 +22,13 @@ std::string number(double v) {
   return text;
 }
 
-// Of the layer that stands for a hard contact, over the size of a face.
-constexpr double kLayer = 0.001;
-// Pressure up to which that layer is linear, over the shear modulus of the softer body.
-constexpr double kKnee = 4;
+// The layer that stands for a hard contact: its thickness over the size of a face, and the pressure up to
+// which it is linear over the shear modulus of the softer body. In the folds of one body, whose flanks meet
+// at angles that faces this size do not follow, one that is thinner or stiffens finds no equilibrium.
+struct DefaultLayer {
+  double thickness = 0, knee = 0;
+};
+constexpr DefaultLayer kBetweenBodies{0.001, 4}, kWithinBody{0.02, std::numeric_limits<double>::infinity()};
 
 class SurfaceContactInstance final : public EffectInstance {
  public:
@@ -200,12 +203,13 @@ class SurfaceContactEffect final : public EffectSource {
                                    stiffest(builder.body(def_.against.value_or(def_.body)))};
     const double softer = std::min(mu[0], mu[1]);
     auto rows = std::make_shared<ContactRows>(def_.name, def_.resolve_time);
-    const double layer = def_.compliance.value_or(kLayer * setup->skin->size() / softer);
-    const double knee = def_.compliance ? std::numeric_limits<double>::infinity() : kKnee * softer;
+    const DefaultLayer standard = setup->skin->single() ? kWithinBody : kBetweenBodies;
+    const double layer = def_.compliance.value_or(standard.thickness * setup->skin->size() / softer);
+    const double knee = def_.compliance ? std::numeric_limits<double>::infinity() : standard.knee * softer;
     for (const SkinPoint& p : setup->skin->points()) {
       // Both sides carry half of the pressure.
       rows->add(softer, p.area, builder.length(), 2 * layer);
-      if (!def_.compliance) rows->knee.push_back(0.5 * p.area * knee);
+      if (std::isfinite(knee)) rows->knee.push_back(0.5 * p.area * knee);
       setup->stick.push_back(def_.stick_stiffness > 0 ? 0.5 * def_.stick_stiffness * p.area
                                                       : 50 * softer * p.area / setup->skin->size());
     }
