@@ -8,6 +8,7 @@
 #include "constraints/contact_pool.h"
 #include "constraints/contact_rows.h"
 #include "constraints/embedding.h"
+#include "constraints/flush_nodes.h"
 #include "constraints/rigid_body.h"
 #include "constraints/surface_nodes.h"
 #include "engine/builder.h"
@@ -35,13 +36,15 @@ class ContactInstance final : public EffectInstance {
     const auto memory = memory_of(c);
     Vec3 force{};
     double normal = 0, tangential = 0, area = 0, pressure = 0, gap = std::numeric_limits<double>::infinity();
+    double depth = 0;
     for (Index s = 0; s < pool_->stencils(); ++s) {
       gap = std::min(gap, pool_->gap(s, frame, c.state.x));
       if (!(lambda[at(s)] < 0)) continue;
       normal -= lambda[at(s)];
       area += rows_->area[at(s)];
+      depth = std::max(depth, rows_->depth(s, lambda[at(s)]) / std::sqrt(rows_->area[at(s)]));
       pressure = std::max(pressure, -lambda[at(s)] / rows_->area[at(s)]);
-      const Distance d = distance_to(pool_->shape(), frame.to_own(pool_->point(s, c.state.x)));
+      const Distance d = distance_to(pool_->shape(), pool_->own_place(s, frame, c.state.x));
       force -= lambda[at(s)] * (frame.A * d.normal);
       if (!rubs) continue;
       const Vec3 f = pool_->kept_pull(s, memory);
@@ -60,6 +63,7 @@ class ContactInstance final : public EffectInstance {
     put("contact_area", "m2", area);
     put("largest_pressure", "Pa", pressure);
     put("smallest_gap", "m", gap);
+    put("depth_over_face", "", depth);
   }
 
   bool surface_forces(const GaugeContext& c, SurfaceForces& f) const override {
@@ -176,9 +180,16 @@ class ContactEffect final : public EffectSource {
     const BodyData& body = builder.body(def_.body);
     const double mu = stiffest(body);
     const auto per = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
+    const std::vector<NodeCells> cells = cells_around(body, builder.rest());
+    const std::vector<FlatSide> sides =
+        pool.follows_pose() ? flat_sides(def_.obstacle) : std::vector<FlatSide>();
+    const ContactFrame frame = pool.frame(0, builder.rest());
     for (const auto& [node, area] : surface_nodes(faces.value(), per, builder.rest())) {
       if (builder.given_directions(node) == 3) continue;  // goes where it is told to
-      pool.add(node, stick(mu, area));
+      const NodeCells& around = cells[at(node - body.first_node)];
+      pool.add(node, stick(mu, area), around.size,
+               inset_of_flush(def_.obstacle, sides, frame.to_own(builder.rest()[at(node)]),
+                              transposed_times(frame.A, around.inward), around.size));
       rows.add(mu, area, builder.length(), def_.compliance);
     }
     if (rows.rows() > 0) return {};

@@ -43,7 +43,7 @@ double mass_of(const ControlPoints& points, std::span<const double> mass) {
 
 double ContactPool::gap_rate(Index s, const RowStart& start, const ContactFrame& frame,
                              const ContactFrame& later, std::span<const Vec3> jump) const {
-  const Vec3 p = point(s, start.x), own = frame.to_own(p);
+  const Vec3 p = point(s, start.x), own = own_place(s, frame, start.x);
   const auto& rider = rider_[at(s)];
   Vec3 rate{};
   if (rider) {
@@ -60,7 +60,7 @@ double ContactPool::gap_rate(Index s, const RowStart& start, const ContactFrame&
 }
 
 ContactPool::Impact ContactPool::impact(Index s, const RowStart& start, const ContactFrame& frame) const {
-  const Vec3 p = point(s, start.x), own = frame.to_own(p);
+  const Vec3 p = point(s, start.x), own = own_place(s, frame, start.x);
   const Vec3 normal = transposed_times(frame.inverse, distance_to(shape_, own).normal);
   const auto& rider = rider_[at(s)];
   const auto nodes = nodes_[s];

@@ -53,12 +53,14 @@ Mat3 made_definite(const Mat3& m, Definiteness policy) {
 
 }  // namespace
 
-void ContactPool::add(Index node, double stick) {
+void ContactPool::add(Index node, double stick, double size, const Vec3& inset) {
   std::vector<Index> nodes = {node};
   if (points_) nodes.insert(nodes.end(), points_->node.begin(), points_->node.end());
   nodes_.push(nodes);
   stick_.push_back(stick);
   offset_.push_back(0);
+  size_.push_back(size);
+  inset_.push_back(inset);
   rider_.emplace_back();
   rider_own_.push_back({});
 }
@@ -69,6 +71,8 @@ void ContactPool::add(const ControlPoints& body, const Vec3& own, double offset,
   nodes_.push(nodes);
   stick_.push_back(stick);
   offset_.push_back(offset);
+  size_.push_back(0);
+  inset_.push_back({});
   rider_.emplace_back(body);
   rider_own_.push_back(own);
 }
@@ -83,7 +87,7 @@ Vec3 ContactPool::point(Index s, std::span<const Vec3> x) const {
 }
 
 double ContactPool::gap(Index s, const ContactFrame& frame, std::span<const Vec3> x) const {
-  return distance_value(shape_, frame.to_own(point(s, x))) - offset_[at(s)];
+  return distance_value(shape_, own_place(s, frame, x)) - offset_[at(s)];
 }
 
 // Weights of the nodes in the motion of the point relative to the shape, the point being at `own` in the
@@ -132,7 +136,7 @@ ContactPool::Friction ContactPool::friction(const StencilRequest& q, const Frame
   const auto nodes = nodes_[s];
   f.mu = coefficient(s, q.memory);
   f.spring.limit = f.mu * std::max(0.0, -q.lag.function_multiplier[at(s)]);
-  f.own = frames.lag.to_own(point(s, q.lag.x));
+  f.own = own_place(s, frames.lag, q.lag.x);
   const Vec3 slope = distance_to(shape_, f.own).normal;
   Vec3& normal = f.spring.normal;
   f.slope = transposed_times(frames.lag.inverse, slope);
@@ -203,7 +207,7 @@ void ContactPool::evaluate(const StencilRequest& q, const StencilSlots& slots) c
   const bool slips = friction_.any() && !q.lag.x.empty();
   for (Index s = q.begin; s < q.end; ++s) {
     const std::size_t n = nodes_[s].size(), first = at(nodes_.offset[at(s)]);
-    const Vec3 own = now.now.to_own(point(s, q.x));
+    const Vec3 own = own_place(s, now.now, q.x);
     const Distance d = distance_to(shape_, own);
     slots.value[at(s)] = d.value - offset_[at(s)];
     slots.energy[at(s)] = 0;
@@ -245,21 +249,6 @@ void ContactPool::accept(const StencilRequest& q, std::span<double> memory) cons
     for (int i = 0; i < 3; ++i) m[i] = f[i];
     if (friction_.memory() > 0) m[3] = spring.slips() ? 1 : 0;
   }
-}
-
-Index ContactPool::passing(const StencilIncrement& increment, std::span<const Vec3> x,
-                           std::span<Vec3> stopped) const {
-  const ContactFrame before = frame(increment.t0, increment.before), now = frame(increment.t1, x);
-  Index count = 0;
-  for (Index s = 0; s < stencils(); ++s) {
-    Vec3 met{};
-    if (!passes_through(shape_, before.to_own(point(s, increment.before)), now.to_own(point(s, x)), met)) {
-      continue;
-    }
-    ++count;
-    if (!stopped.empty() && !rider_[at(s)]) stopped[at(nodes_[s][0])] = now.to_world(met);
-  }
-  return count;
 }
 
 }  // namespace isochor

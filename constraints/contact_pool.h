@@ -29,8 +29,9 @@ class ContactPool final : public StencilPool {
         friction_(friction),
         coupled_(coupled),
         points_(points) {}
-  // `stick`: stiffness of friction that sticks [N/m].
-  void add(Index node, double stick);
+  // `stick`: stiffness of friction that sticks [N/m]; `size`: of the cells at the node [m]; `inset`: where
+  // the distance is taken, less where the node is, in the axes of the shape [m].
+  void add(Index node, double stick, double size = 0, const Vec3& inset = {});
   // A point of a free rigid body at `own` in its axes, which keeps `offset` away.
   void add(const ControlPoints& body, const Vec3& own, double offset, double stick);
   void finish() { finish_topology(); }
@@ -51,7 +52,10 @@ class ContactPool final : public StencilPool {
   bool has_barrier() const override { return shape_.shape != ObstacleShape::plane; }
   Index passing(const StencilIncrement& increment, std::span<const Vec3> x,
                 std::span<Vec3> stopped) const override;
+  double entry(double t0, double t1, std::span<const Vec3> from, std::span<const Vec3> x) const override;
 
+  // Whether the shape is where a pose says, and no free rigid body.
+  bool follows_pose() const { return !points_; }
   // Whether the point of a stencil is on a rigid body and not a node.
   bool rides(Index s) const { return rider_[at(s)].has_value(); }
   // The pull of friction that a step left, in the axes of the shape [N].
@@ -60,6 +64,10 @@ class ContactPool final : public StencilPool {
   Vec3 point(Index s, std::span<const Vec3> x) const;
   ContactFrame frame(double t, std::span<const Vec3> x) const {
     return points_ ? frame_of(*points_, x) : frame_of(pose_of(shape_, t));
+  }
+  // Where the distance of a stencil is taken, in the axes of the shape.
+  Vec3 own_place(Index s, const ContactFrame& frame, std::span<const Vec3> x) const {
+    return frame.to_own(point(s, x)) + inset_[at(s)];
   }
   double gap(Index s, const ContactFrame& frame, std::span<const Vec3> x) const;
   // Impacts, in contact_impact.cpp. Rate of the gap [m/s] when an increment begins, at velocities v + jump;
@@ -107,7 +115,11 @@ class ContactPool final : public StencilPool {
   FrictionLaw friction_;
   bool coupled_;
   std::optional<ControlPoints> points_;
+  bool meets_elsewhere(Index s, const Vec3& y0, const Vec3& y1, Vec3& met) const;
   std::vector<double> stick_, offset_;
+  // Of nodes: the size of their cells, 0 of points on rigid bodies [m]; and as in add().
+  std::vector<double> size_;
+  std::vector<Vec3> inset_;
   // Of points on a free rigid body: which, and where; a node has none.
   std::vector<std::optional<ControlPoints>> rider_;
   std::vector<Vec3> rider_own_;

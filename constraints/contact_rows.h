@@ -1,5 +1,6 @@
 // Rows of contact: one a point, gap - target - C multiplier = 0 with multiplier <= 0, C the compliance over
-// the point's area.
+// the point's area. A layer may stiffen with what presses: C multiplier then holds up to a knee of pressure
+// alone, and the depth beyond it ends near twice the one there.
 #pragma once
 
 #include <limits>
@@ -7,6 +8,13 @@
 #include "engine/pool.h"
 
 namespace isochor {
+
+// Of a pair of surfaces.
+struct ContactLayer {
+  double compliance = 0;  // [m/Pa]
+  double knee = 0;        // pressure up to which it is linear, infinity: always [Pa]
+  double modulus = 0;     // shear modulus of the softer body [Pa]
+};
 
 class ContactRows : public RowPool {
  public:
@@ -31,7 +39,16 @@ class ContactRows : public RowPool {
     upper.push_back(0.0);
   }
 
+  bool has_law() const override { return !knee.empty(); }
+  bool has_local_law() const override { return true; }
+  double evaluate_law(const RowIncrement& increment, std::span<const double> lambda, std::span<double> strain,
+                      std::span<double> tangent) const override;
+
+  // How far the layer of a row gives way under its multiplier [m], zero or more.
+  double depth(Index row, double multiplier) const;
+
   std::vector<double> area;     // [m^2]
+  std::vector<double> knee;     // force up to which the layer is linear [N]; empty: it is so always
   std::vector<double> overlap;  // gap at the start where it is below zero, else zero [m]; empty: none is
   std::vector<double> allowed;  // the same for overlap that stays; empty: none does
 

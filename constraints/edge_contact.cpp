@@ -52,7 +52,7 @@ Result<void> find_overlap(const Builder& builder, const SurfaceContactDef& def, 
 }  // namespace
 
 Result<EdgeContact> EdgeContact::build(Builder& builder, const SurfaceContactDef& def, const Skin& skin,
-                                       double layer, double softer) {
+                                       const ContactLayer& layer) {
   EdgeContact out;
   auto setup = std::make_shared<EdgeContactPool::Setup>();
   auto edges = std::make_shared<SkinEdges>(skin, builder.rest());
@@ -67,9 +67,10 @@ Result<EdgeContact> EdgeContact::build(Builder& builder, const SurfaceContactDef
   for (Index e = 0; e < edges->count(); ++e) {
     const double area = (*edges)[e].area;
     // Both edges of a pair carry half of the force.
-    rows->add(softer, area, builder.length(), 2 * layer);
+    rows->add(layer.modulus, area, builder.length(), 2 * layer.compliance);
+    if (std::isfinite(layer.knee)) rows->knee.push_back(0.5 * area * layer.knee);
     setup->stick.push_back(def.stick_stiffness > 0 ? 0.5 * def.stick_stiffness * area
-                                                   : 50 * softer * area / edges->size());
+                                                   : 50 * layer.modulus * area / edges->size());
   }
   std::shared_ptr<const StencilPool> pool =
       std::make_shared<EdgeContactPool>(setup, std::vector<Index>(at(edges->count()), -1));

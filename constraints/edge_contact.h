@@ -10,11 +10,10 @@ namespace isochor {
 
 class EdgeContact {
  public:
-  // Of the surfaces of a surface contact whose layer is given [m/Pa], and the shear modulus of the softer
-  // body [Pa]. Adds nothing where no edge bulges. Fails where edges are past each other at the start and
-  // that is not to be resolved.
+  // Of the surfaces of a surface contact whose layer is given. Adds nothing where no edge bulges. Fails where
+  // edges are past each other at the start and that is not to be resolved.
   static Result<EdgeContact> build(Builder& builder, const SurfaceContactDef& def, const Skin& skin,
-                                   double layer, double softer);
+                                   const ContactLayer& layer);
 
   struct Totals {
     Vec3 force{};                                          // on the first side [N]

@@ -100,6 +100,13 @@ void Skin::split_at_sharp_edges(std::span<const Vec3> rest) {
       other = -1;
     }
   }
+  at_border_.assign(rest.size(), false);
+  for (std::size_t t = 0; t < corner_.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (across_[t][k] >= 0) continue;
+      at_border_[at(corner_[t][k])] = at_border_[at(corner_[t][(k + 1) % 3])] = true;
+    }
+  }
 }
 
 // Numbers of the parts that sharp edges leave, by triangle.
@@ -270,7 +277,13 @@ Skin::Finding Skin::find(Index s, std::span<const Vec3> from, std::span<const Ve
       return across_[at(t)][k] < 0 && side_across_[at(t)][k] < 0;
     };
     bool border = near.edge >= 0 && open(near.edge);
-    if (near.corner >= 0) border = open(near.corner) || open((near.corner + 2) % 3);
+    if (near.corner >= 0) {
+      // A triangle that ends at a border with a corner alone does not see what is beside it: its neighbors
+      // do.
+      const auto k = static_cast<std::size_t>(near.corner), before = (k + 2) % 3;
+      const bool inner = across_[at(t)][k] >= 0 && across_[at(t)][before] >= 0;
+      border = open(near.corner) || open((near.corner + 2) % 3) || (inner && at_border_[at(c[k])]);
+    }
     const double most = (in_patch(center, t, s) ? kLeave : kEnter) * size_;
     if (border && square - height * height > most * most) return Candidate{};
     return Candidate{t, square, height};

@@ -98,6 +98,7 @@ class Skin {
   bool single_ = true;
   double size_ = 0;
   std::vector<std::array<Index, 3>> corner_, across_, side_across_;  // neighbor behind edge k, -1: none
+  std::vector<bool> at_border_;  // by node: whether a smooth part of the surface ends there
   std::vector<Part> part_;
   std::vector<int> side_;
   std::vector<SkinPoint> points_;

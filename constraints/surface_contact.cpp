@@ -22,8 +22,13 @@ std::string number(double v) {
   return text;
 }
 
-// Of the layer that stands for a hard contact, over the size of a face.
-constexpr double kLayer = 0.02;
+// The layer that stands for a hard contact: its thickness over the size of a face, and the pressure up to
+// which it is linear over the shear modulus of the softer body. In the folds of one body, whose flanks meet
+// at angles that faces this size do not follow, one that is thinner or stiffens finds no equilibrium.
+struct DefaultLayer {
+  double thickness = 0, knee = 0;
+};
+constexpr DefaultLayer kBetweenBodies{0.001, 4}, kWithinBody{0.02, std::numeric_limits<double>::infinity()};
 
 class SurfaceContactInstance final : public EffectInstance {
  public:
@@ -46,6 +51,7 @@ class SurfaceContactInstance final : public EffectInstance {
     const auto& points = pool.setup().skin->points();
     Vec3 force{};
     double normal = 0, tangential = 0, area = 0, gap = std::numeric_limits<double>::infinity();
+    double depth = 0;
     for (Index s = 0; s < pool.stencils(); ++s) {
       if (!pool.close(s)) continue;
       const PatchPoint near = pool.nearest(s, c.state.x);
@@ -57,6 +63,7 @@ class SurfaceContactInstance final : public EffectInstance {
       const double sign = points[at(s)].side == 0 ? 1 : -1;
       if (!pool.setup().skin->single()) force += sign * (l * near.normal - pull);
       normal += l;
+      depth = std::max(depth, rows_->depth(s, -l) / skin_->size());
       tangential += std::sqrt(dot(pull, pull));
       area += 0.5 * rows_->area[at(s)];
     }
@@ -83,6 +90,7 @@ class SurfaceContactInstance final : public EffectInstance {
     put("contact_area", "m2", area);
     put("largest_pressure", "Pa", pressure);
     put("smallest_gap", "m", gap);
+    put("depth_over_face", "", depth);
   }
 
   bool surface_forces(const GaugeContext& c, SurfaceForces& f) const override {
@@ -196,10 +204,13 @@ class SurfaceContactEffect final : public EffectSource {
                                    stiffest(builder.body(def_.against.value_or(def_.body)))};
     const double softer = std::min(mu[0], mu[1]);
     auto rows = std::make_shared<ContactRows>(def_.name, def_.resolve_time);
-    const double layer = def_.compliance.value_or(kLayer * setup->skin->size() / softer);
+    const DefaultLayer standard = setup->skin->single() ? kWithinBody : kBetweenBodies;
+    const double layer = def_.compliance.value_or(standard.thickness * setup->skin->size() / softer);
+    const double knee = def_.compliance ? std::numeric_limits<double>::infinity() : standard.knee * softer;
     for (const SkinPoint& p : setup->skin->points()) {
       // Both sides carry half of the pressure.
       rows->add(softer, p.area, builder.length(), 2 * layer);
+      if (std::isfinite(knee)) rows->knee.push_back(0.5 * p.area * knee);
       setup->stick.push_back(def_.stick_stiffness > 0 ? 0.5 * def_.stick_stiffness * p.area
                                                       : 50 * softer * p.area / setup->skin->size());
     }
@@ -213,7 +224,7 @@ class SurfaceContactEffect final : public EffectSource {
     rows->largest_overshoot = 0.25 * setup->skin->size();
     rows->stencil_pool = builder.add_stencils(pool);
     const Index row_pool = builder.add_rows(rows);
-    auto edges = EdgeContact::build(builder, def_, *setup->skin, layer, softer);
+    auto edges = EdgeContact::build(builder, def_, *setup->skin, {layer, knee, softer});
     if (!edges) return Error{edges.error()};
     return std::unique_ptr<EffectInstance>(
         std::make_unique<SurfaceContactInstance>(rows, row_pool, setup->skin, std::move(edges).value()));

@@ -84,6 +84,17 @@ bool Newton::descends(const SaddleProblem& p, std::span<const Vec3> x, std::span
   return moderate && slope <= 1e-12 * potential_magnitude(p, x);
 }
 
+// Surfaces that press on each other hard, from equal bodies, are in equilibrium as they lie and yet would
+// slip off each other at their borders. Which branch a host wants is told by where the last step was: a
+// direction that goes downhill as it is, whatever the inertia, stays on it.
+bool Newton::descend_unmended(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
+                              SaddleReport& report) {
+  mended_ = false;
+  if (factor_shifted(p.mass_scale, 0, report)) return direction(lambda, report);
+  return report.status == SaddleStatus::converged && !singular_ && report.negative_pivots >= 0 &&
+         direction(lambda, report) && descends(p, x, lambda);
+}
+
 // The ladder of factor(), for directions that do not descend or were not found.
 bool Newton::mend_direction(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
                             SaddleReport& report) {
@@ -327,7 +338,7 @@ bool Newton::search(const SaddleProblem& p, std::span<Vec3> x, std::span<double>
   double longest = 0;
   for (const Vec3& d : dx_) longest = std::max(longest, norm(d));
   double tau = longest > 100 * s.length() ? 100 * s.length() / longest : 1;
-  const double most = tau = longest_step(tau);
+  const double most = tau = damping_ * longest_step(tau);
   double value = 0;
   bool accepted = false;
   for (int trial = 0; trial < 40 && tau > 1e-10; ++trial) {
@@ -509,8 +520,34 @@ void Newton::begin_search(const SaddleOptions& options) {
   resting_ = false;
   creeping_ = 0;
   full_steps_ = 0;
+  past_residuals_.fill(0);
+  cycle_ = 0;
+  damping_ = 1;
   definiteness_ = options.definiteness;
   gamma_ = 0.1;
+}
+
+// What touches at corners of faces may jump from one to the next and back in whole steps, each of which goes
+// downhill in the merit of its own multipliers. A residual that comes back tells; shorter steps end in between.
+void Newton::damp_cycles(const SaddleReport& report) {
+  constexpr double same = 1e-3, shortest = 0.125, left = 0.1;
+  const double now = report.force_residual;
+  if (now < left * cycle_) {
+    damping_ = 1;
+    cycle_ = 0;
+  }
+  // The last one may be as large where steps are short.
+  const bool returns = std::any_of(past_residuals_.begin() + 1, past_residuals_.end(), [now](double before) {
+    return before > 0 && std::abs(now - before) < same * now;
+  });
+  if (returns && full_step_) {
+    damping_ = std::max(shortest, 0.5 * damping_);
+    cycle_ = cycle_ > 0 ? std::min(cycle_, now) : now;
+  } else if (returns && damping_ < 1 && damping_ > shortest) {
+    damping_ *= 0.5;
+  }
+  std::rotate(past_residuals_.begin(), past_residuals_.end() - 1, past_residuals_.end());
+  past_residuals_[0] = now;
 }
 
 bool Newton::left_all_bounds(std::span<const Vec3> x) const {
@@ -548,6 +585,8 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
   begin_search(options);
   const System& s = *system_;
   clamp(lambda);
+  bool unmended = s.has_followers() && p.mass_scale == 0;
+  double before = 0;
   for (int iteration = 0;; ++iteration) {
     {
       const Stopwatch watch(seconds_.evaluate);
@@ -565,10 +604,17 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     if ((iteration == 0 || s.has_lag()) && balanced(p, options, x, lambda, report)) return report;
     if (s.has_bounds()) choose_clamped(lambda, iteration == 0);
     if (!s.laws().empty()) apply_laws(p, lambda, true);
-    if (!factor(p, x, lambda, report)) {
-      return fail(report.status == SaddleStatus::converged ? SaddleStatus::singular : report.status);
+    bool found = false;
+    unmended = unmended && (iteration == 0 || (full_step_ && report.force_residual < 0.5 * before));
+    before = has_gap_ ? std::numeric_limits<double>::infinity() : report.force_residual;
+    if (unmended) found = descend_unmended(p, x, lambda, report);
+    if (!found && report.status == SaddleStatus::out_of_memory) return fail(report.status);
+    if (!found) {
+      if (!factor(p, x, lambda, report)) {
+        return fail(report.status == SaddleStatus::converged ? SaddleStatus::singular : report.status);
+      }
+      found = direction(lambda, report);
     }
-    bool found = direction(lambda, report);
     if (!found && kkt_.inertia_was_wrong()) found = factor(p, x, lambda, report) && direction(lambda, report);
     // A backend that cannot tell the inertia is judged by its directions.
     if (report.negative_pivots < 0 && !(found && descends(p, x, lambda))) {
@@ -582,6 +628,7 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     // Steps that short lead nowhere; the work is better spent on a shorter increment, or on other stencils.
     if (creeping_ == 3) return fail(SaddleStatus::line_search_failed);
     const bool done = balanced(p, options, x, lambda, report);
+    if (s.has_bounds()) damp_cycles(report);
     if (progress) progress(report.iterations, report.force_residual, report.row_residual);
     // With a lag, balance counts only once it is renewed.
     if ((done && !s.has_lag()) || correct(p, options, x, lambda, report)) return report;

@@ -34,8 +34,11 @@ class Newton : public SaddlePoint {
   // symmetric factors, of a matrix next to the one wanted (Kkt::solve_coupled).
   enum class Coupling : std::uint8_t { none, factored, added };
   void begin_search(const SaddleOptions& options);  // of a solve
+  void damp_cycles(const SaddleReport& report);
   bool left_all_bounds(std::span<const Vec3> x) const;
   bool descends(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda);
+  bool descend_unmended(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
+                        SaddleReport& report);
   bool mend_direction(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
                       SaddleReport& report);
   double longest_step(double tau);
@@ -71,9 +74,12 @@ class Newton : public SaddlePoint {
   bool settle_venture(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda,
                       SaddleReport& report);
 
-  bool resting_ = false;         // prescribed motion waits for the body to follow
-  int creeping_ = 0;             // steps in a row that were cut to next to nothing
-  std::uint8_t full_steps_ = 0;  // of the last eight, the latest in the lowest bit
+  std::array<double, 5> past_residuals_{};  // of forces, the latest first
+  double cycle_ = 0;                        // one that came back; 0: none did
+  double damping_ = 1;                      // longest step that may be taken since
+  bool resting_ = false;                    // prescribed motion waits for the body to follow
+  int creeping_ = 0;                        // steps in a row that were cut to next to nothing
+  std::uint8_t full_steps_ = 0;             // of the last eight, the latest in the lowest bit
   // A step that the merit refused and that was taken all the same, until one more Newton step has shown
   // where it leads: where it started, its direction, and the merit that must be reached.
   struct Venture {

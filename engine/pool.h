@@ -119,6 +119,15 @@ class StencilPool {
     (void)stopped;
     return 0;
   }
+  // How far what is prescribed (an obstacle) is moved from t0 to t1 into nodes that go from `from` to x, over
+  // what can be met within one increment: more than 1 asks for a shorter one.
+  virtual double entry(double t0, double t1, std::span<const Vec3> from, std::span<const Vec3> x) const {
+    (void)t0;
+    (void)t1;
+    (void)from;
+    (void)x;
+    return 0;
+  }
 
   // True for pools whose stencils change with what is close (contact of surfaces that move). Between
   // increments, and once a solution is found, they are asked whether the present stencils do for the
@@ -238,6 +247,9 @@ class RowPool {
   // `compliance` only names the places of dc/dlambda. The law must be non-decreasing (dc/dlambda positive
   // semi-definite); an unsymmetric tangent is given by a symmetric one close to it.
   virtual bool has_law() const { return false; }
+  // Of a law that takes every row by itself, with `compliance` as its slope at zero: such rows may be
+  // condensed, and methods that know no laws take them as linear.
+  virtual bool has_local_law() const { return false; }
   // Fills strain = c (one a row) and, where not empty, tangent (one for each entry of `compliance`); returns
   // a potential U with dU/dlambda = c. Outside the law's domain: infinity, never NaN.
   virtual double evaluate_law(const RowIncrement& increment, std::span<const double> lambda,

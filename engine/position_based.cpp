@@ -23,10 +23,10 @@ Index first_free(const ColorSet& taken) {
 }  // namespace
 
 std::string PositionBased::unsupported(const System& system) {
-  if (!system.laws().empty()) {
-    const auto& pools = system.parts().row_pools;
-    return "rows \"" + std::string(pools[at(system.laws().front().row_pool)]->name()) +
-           "\" have a law of their own in place of a compliance";
+  for (const auto& law : system.laws()) {
+    const RowPool& pool = *system.parts().row_pools[at(law.row_pool)];
+    if (pool.has_local_law()) continue;
+    return "rows \"" + std::string(pool.name()) + "\" have a law of their own in place of a compliance";
   }
   return {};
 }
@@ -51,6 +51,12 @@ PositionBased::PositionBased(std::shared_ptr<const System> system, const Paralle
     if (e.row != e.col) entries[at(e.col)].push_back(static_cast<Index>(k));
   }
   for (const auto& list : entries) row_compliance_.push(list);
+  // Of local laws the slope at zero.
+  for (const ComplianceEntry& e : s.compliance()) compliance_.push_back(e.value);
+  for (const auto& law : s.laws()) {
+    const auto& linear = s.parts().row_pools[at(law.row_pool)]->compliance;
+    for (std::size_t k = 0; k < linear.size(); ++k) compliance_[law.first_entry + k] = linear[k].value;
+  }
   for (const auto& pool : s.parts().row_pools) {
     if (pool->law != RowLaw::compliant) continue;
     const Index functions = s.parts().stencil_pools[at(pool->stencil_pool)]->functions();
@@ -191,8 +197,9 @@ void PositionBased::visit_row(Index row, std::span<Vec3> x, std::span<double> la
   double theta = sum(s.row_gather(), row, value_, 0.0) - target[at(row)], give = 0;
   for (const Index k : row_compliance_[row]) {
     const ComplianceEntry& e = s.compliance()[at(k)];
-    theta -= e.value * lambda[at(e.row == row ? e.col : e.row)];
-    if (e.row == e.col) give += e.value;
+    const double c = compliance_[at(k)];
+    theta -= c * lambda[at(e.row == row ? e.col : e.row)];
+    if (e.row == e.col) give += c;
   }
   const auto begin = s.row_jacobian_begin()[at(row)], end = s.row_jacobian_begin()[at(row) + 1];
   for (auto d = begin; d < end; ++d) {

@@ -51,6 +51,7 @@ class PositionBased : public SaddlePoint {
   Lists row_stencils_;
   std::vector<Index> row_pool_;
   Lists row_compliance_;  // places in compliance()
+  std::vector<double> compliance_;
   // Slots of stencils, as in Assembly.
   std::vector<double> energy_, value_, zero_;
   std::vector<Vec3> gradient_, jacobian_, force_;

@@ -160,7 +160,7 @@ std::vector<Index>& RowTreatments::list_of(RowTreatment treatment) {
 }
 
 Result<void> RowTreatments::check_condensed(const RowPool& pool, const std::string& who) {
-  if (pool.has_law()) {
+  if (pool.has_law() && !pool.has_local_law()) {
     return Error{who + "a row with a law of its own is not condensed; use treatment saddle or bordered"};
   }
   std::vector<double> diagonal(at(pool.rows()), 0);

@@ -333,7 +333,7 @@ SaddleReport World::Impl::solve_increment(double h, SaddleProblem& problem, cons
       progress(ProgressInfo{t, t, iteration, f, r});
     };
   }
-  count_passing(problem.increment, true);
+  const bool stopped = count_passing(problem.increment, true) > 0;
   SaddleReport report =
       newton->solve(problem, from_guess || !stand_ins.empty() ? saddle : last, x_trial, lambda_trial);
   judge(h, problem, report);
@@ -342,7 +342,8 @@ SaddleReport World::Impl::solve_increment(double h, SaddleProblem& problem, cons
       report.status != SaddleStatus::inadmissible && report.status != SaddleStatus::passed_through;
   const bool stuck = report.status != SaddleStatus::converged && report.status != SaddleStatus::cancelled &&
                      report.status != SaddleStatus::out_of_memory && !out_of_budget;
-  if (from_guess && stuck) {
+  // Nodes that were put where they meet an obstacle may have turned over their cells.
+  if (stuck && (from_guess || (stopped && report.status == SaddleStatus::not_finite))) {
     std::copy(state.lambda.begin(), state.lambda.end(), lambda_trial.begin());
     std::copy(state.x.begin(), state.x.end(), x_trial.begin());
     SaddleReport second = newton->solve(problem, stand_ins.empty() ? last : saddle, x_trial, lambda_trial);

@@ -109,6 +109,7 @@ struct World::Impl {
   }
   bool controls_error() const { return options.time_error > 0 && options.scheme->has_inertia(); }
   double estimate_error(double h);
+  double largest_entry(double t0, double t1);
   void accept_memory(const StencilIncrement& increment);
   Index count_passing(const StencilIncrement& increment, bool stop);
   // Has stencils that change with what is close look at the trial positions, and takes over what they become.

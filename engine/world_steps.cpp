@@ -206,6 +206,22 @@ double World::Impl::largest_turn(double t0, double t1) const {
   return largest;
 }
 
+// As StencilPool::entry(). A node that moves as it did and is then not run over does not count.
+double World::Impl::largest_entry(double t0, double t1) {
+  double largest = 0;
+  for (const auto& p : system->parts().stencil_pools) {
+    const double still = p->entry(t0, t1, state.x, state.x);
+    if (still <= largest) continue;
+    if (!options.scheme->has_inertia()) {
+      largest = still;
+      continue;
+    }
+    for (std::size_t i = 0; i < predicted.size(); ++i) predicted[i] = state.x[i] + (t1 - t0) * state.v[i];
+    largest = std::max(largest, std::min(still, p->entry(t0, t1, state.x, predicted)));
+  }
+  return largest;
+}
+
 // Local error of the increment just accepted, from velocities before and after it: that of the scheme's
 // order, root mean square over the mass, relative to the scene's length. Infinity at the first increment of a
 // second order scheme would forbid it, so that one is judged as of first order.
@@ -320,7 +336,11 @@ StepReport World::advance(double h) {
     const double remaining = t_end - w.state.t;
     double dt = increment > 0.999 * remaining ? remaining : increment;
     // The end of half a turn is that of half a turn the other way.
-    while (w.largest_turn(w.state.t, w.state.t + dt) > largest_turn && dt > 1e-9 * h) dt *= 0.5;
+    // And what an obstacle runs over within an increment may come out on any side of it.
+    while ((w.largest_turn(w.state.t, w.state.t + dt) > largest_turn ||
+            w.largest_entry(w.state.t, w.state.t + dt) > 1) &&
+           dt > 1e-9 * h)
+      dt *= 0.5;
     // While the increment can still be cut, patience has an end, unless the solve gets somewhere; less of it
     // where the whole one failed already.
     const bool last_chance = 0.5 * dt < w.options.smallest_fraction * h;
@@ -397,8 +417,12 @@ StepReport World::advance(double h) {
       report.reason +=
           "; increments shrank to " + number(increment / h) +
           " of the step, the last equilibrium is at t = " + number(w.state.t) +
-          ": there may be none beyond (a limit point, or a load that nothing can carry), or none "
-          "that this method reaches; try more steps, another method, or continuation() in statics";
+          (w.system->has_bounds()
+               ? ": the solver found no way on, which where things touch need not mean that there is none; "
+                 "more "
+                 "steps, finer or rounder surfaces may help"
+               : ": there may be none beyond (a limit point, or a load that nothing can carry), or none "
+                 "that this method reaches; try more steps, another method, or continuation() in statics");
     }
     break;
   }

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "engine/text.h"
+#include "scenes/contact_watch.h"
 #include "scenes/outputs.h"
 #include "scenes/probes.h"
 #include "scenes/scene_file.h"
@@ -67,6 +68,7 @@ class Run {
   RunResult& result_;
   Clock::time_point start_;
   std::vector<MaterialPoint> probes_;
+  ContactWatch contacts_;
   int doubtful_steps_ = 0;  // that ended with a warning
   bool interrupted_ = false;
   RunCheckpoint complete_;  // as the last complete step left the run, without its records
@@ -82,6 +84,7 @@ void Run::warn(const std::string& text) {
 
 // The first step that ended with a warning is told when it happens; here how many did, and how the run ends.
 void Run::warn_of_ends() {
+  for (const std::string& finding : contacts_.findings()) warn(finding);
   if (doubtful_steps_ < 2) return;
   const StepRecord& last = result_.records.back();
   std::string text = std::to_string(doubtful_steps_) + " of " + std::to_string(last.step) +
@@ -135,7 +138,9 @@ void Run::record(int step, const StepReport& report) {
     r.probes.push_back(probes_[p].at(world.positions(id)) - probes_[p].at(world.rest_positions(id)));
   }
   r.cavities.resize(scene_.cavities.size());
-  for (const Gauge& g : world.gauges()) {
+  const std::vector<Gauge> gauges = world.gauges();
+  contacts_.look(r.time, gauges);
+  for (const Gauge& g : gauges) {
     const bool of_chamber = g.kind == "cavity" && (g.quantity == "pressure" || g.quantity == "volume");
     if (!of_chamber) r.gauges.push_back(g);
     for (std::size_t c = 0; c < scene_.cavities.size(); ++c) {

@@ -369,6 +369,7 @@ TEST_CASE("a solve that is stuck where what is nearest changes looks around agai
     SurfaceContactDef touch;
     touch.body = lower;
     touch.against = upper;
+    touch.compliance = 1.6e-7;
     test::value(world.add(surface_contact(touch)));
     int rejected = 0;
     for (int k = 0; k < 4; ++k) rejected += test::must_advance(world, 0.25).rejected_substeps;
@@ -491,6 +492,6 @@ TEST_CASE("Hertz: force, radius and pressure of a soft sphere on a soft half-spa
     const double contact_radius = std::sqrt(2 * gauge_of(world, "contact_area") / std::sin(angle));
     CHECK(contact_radius == Approx(std::sqrt(radius * d)).epsilon(0.03));
     CHECK(gauge_of(world, "largest_pressure") ==
-          Approx(2 * modulus / pi * std::sqrt(d / radius)).epsilon(0.05));
+          Approx(2 * modulus / pi * std::sqrt(d / radius)).epsilon(0.07));
   }
 }
