@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <ctime>
 #include <tuple>
 
@@ -25,8 +26,20 @@ double processor_seconds() {
 // Warnings of a world, and what its last report says beside the numbers.
 std::vector<std::string> warnings_of(const World& world, const StepReport& report) {
   std::vector<std::string> said = world.warnings();
-  if (!report.reason.empty()) said.push_back(report.reason);
+  if (!report.warning.empty()) said.push_back(report.warning);
   return said;
+}
+
+// What makes a message no sentence for people; empty where nothing does.
+std::string unreadable(const std::string& text) {
+  if (text.size() > 2000) return "a message has " + std::to_string(text.size()) + " characters";
+  std::size_t digits = 0;
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 && c != '\n') return "a message has control characters: " + text;
+    digits = c >= '0' && c <= '9' ? digits + 1 : 0;
+    if (digits > 20) return "a message has a number of more than twenty digits: " + text;
+  }
+  return {};
 }
 
 class ChaosRun {
@@ -62,7 +75,9 @@ class ChaosRun {
     // Other work on the machine is not the engine's fault.
     out_.own_overshoot = std::max(out_.own_overshoot, std::min(wall, processor));
   }
-  bool timed() const { return drive_.budget_seconds > 0 || drive_.wall_seconds > 0; }
+  bool timed() const {
+    return drive_.budget_seconds > 0 || drive_.wall_seconds > 0 || drive_.cancel_after > 0;
+  }
 
   const SceneDef& scene_;
   const ChaosDrive& drive_;
@@ -73,6 +88,7 @@ class ChaosRun {
   std::optional<BuiltScene> reloaded_;
   std::uint64_t reloaded_before_ = 0;
   bool unfinished_ = false;
+  int reports_ = 0;  // of progress
 };
 
 bool ChaosRun::broken(const std::optional<Finding>& finding) {
@@ -129,6 +145,8 @@ bool ChaosRun::take(const StepReport& report, double before, std::uint64_t hash)
   World& world = built_.world;
   out_.iterations += report.iterations;
   const bool stayed = world.time() == before;
+  if (const std::string why = unreadable(report.reason + " " + report.warning); !why.empty())
+    return broken("message", why);
   if (report.status != StepStatus::converged && report.reason.empty())
     return broken("no reason", "a step that did not converge says no reason");
   if (report.status == StepStatus::rejected && report.reason.find("cancelled") != std::string::npos)
@@ -138,12 +156,30 @@ bool ChaosRun::take(const StepReport& report, double before, std::uint64_t hash)
     ++out_.steps;
     return broken(judge_.finite(built_));
   }
+  const bool given_back = report.status == StepStatus::rejected && stayed && budgeted(out_.steps);
   if (report.status != StepStatus::converged && stayed && world.state_hash() != hash)
     return broken("changed state", "a step that was not taken changed the state: " + report.reason);
-  if (report.status == StepStatus::converged && stayed && !scene_.analysis.path_step)
-    return broken("no step", "a step converged and the time is where it was");
+  // In full, to the rounding of its parts.
+  const bool whole = std::abs(world.time() - before - plan_.h) <= 1e-9 * (plan_.h + std::abs(before));
+  if (report.status == StepStatus::converged && !whole && !scene_.analysis.path_step) {
+    return broken("no step", "a step of " + std::to_string(plan_.h) + " converged and the time went from " +
+                                 std::to_string(before) + " to " + std::to_string(world.time()));
+  }
   if (!stayed && broken(judge_.accepted(built_, warnings_of(world, report)))) return true;
   if (report.status == StepStatus::converged) {
+    ++out_.steps;
+    if (out_.warning.empty()) out_.warning = report.warning;
+    const auto [min_J, inverted] = judge_.smallest_J(world);
+    if (report.inverted_cells == inverted && std::abs(report.min_J - min_J) <= 1e-6 * (1 + std::abs(min_J)))
+      return false;
+    return broken("measures", "the report says min J " + std::to_string(report.min_J) + " and " +
+                                  std::to_string(report.inverted_cells) +
+                                  " inverted cells, where there are " + std::to_string(min_J) + " and " +
+                                  std::to_string(inverted));
+  }
+  if (given_back) {
+    // A budget that leaves nothing to keep is no reason why later steps should not go on.
+    unfinished_ = true;
     ++out_.steps;
     return false;
   }
@@ -157,17 +193,28 @@ void ChaosRun::march() {
   World& world = built_.world;
   const auto start = Clock::now();
   const double processor = processor_seconds();
-  if (drive_.wall_seconds > 0) {
-    world.on_progress([&](const ProgressInfo&) {
-      if (seconds_since(start) > drive_.wall_seconds) world.cancel();
+  if (drive_.cancel_after > 0) {
+    world.on_progress([&world, this](const ProgressInfo&) {
+      if (++reports_ == drive_.cancel_after) world.cancel();
     });
+  }
+  if (drive_.wall_seconds > 0) {
+    const auto late = [&] { return seconds_since(start) > drive_.wall_seconds; };
+    if (drive_.cancels) {
+      world.on_progress([&world, late](const ProgressInfo&) {
+        if (late()) world.cancel();
+      });
+    } else {
+      world.stop_when(late);
+    }
   }
   out_.verdict = ChaosVerdict::solved;
   for (int step = 0; step < plan_.steps; ++step) {
     if (reload(step)) return;
     const double before = world.time();
     const std::uint64_t hash = world.state_hash();
-    if (drive_.wall_seconds > 0 && seconds_since(start) > drive_.wall_seconds) world.cancel();
+    if (drive_.cancels && drive_.wall_seconds > 0 && seconds_since(start) > drive_.wall_seconds)
+      world.cancel();
     const auto step_start = Clock::now();
     const double step_processor = processor_seconds();
     const StepReport report = next(world, step);
@@ -177,6 +224,14 @@ void ChaosRun::march() {
     if (drive_.wall_seconds > 0)
       overshot(seconds_since(start) - drive_.wall_seconds,
                processor_seconds() - processor - drive_.wall_seconds);
+    // Sweeps are of a fixed number.
+    const bool sweeps = scene_.analysis.method == Method::position_based;
+    const int allowed = sweeps ? 0 : drive_.budget_iterations;
+    if (budgeted(step) && allowed > 0 && report.iterations > allowed) {
+      broken("overshoot",
+             std::to_string(report.iterations) + " iterations within a budget of " + std::to_string(allowed));
+      return;
+    }
     const bool over = take(report, before, hash);
     std::tie(out_.min_J, out_.inverted) = judge_.smallest_J(world);
     if (out_.verdict == ChaosVerdict::broken) return;
@@ -184,10 +239,19 @@ void ChaosRun::march() {
     if (over || out_.verdict == ChaosVerdict::broken) return;
     if (scene_.analysis.path_step && world.time() >= scene_.analysis.duration) break;
   }
-  if (out_.inverted > 0) {
+  if (!out_.warning.empty()) {
     out_.verdict = ChaosVerdict::told;
-    out_.reason = std::to_string(out_.inverted) + " cells are inverted, and a warning says so";
+    out_.reason = out_.warning;
   }
+}
+
+// The same seed with iterations in place of seconds, so that it does the same on every machine.
+ChaosDrive without_clock(const ChaosScene& chaos) {
+  ChaosDrive drive = chaos.drive;
+  if (drive.budget_seconds > 0) drive.budget_iterations = static_cast<int>(1 + chaos.seed % 4);
+  if (drive.wall_seconds > 0) drive.cancel_after = static_cast<int>(1 + chaos.seed % 40);
+  drive.budget_seconds = drive.wall_seconds = 0;
+  return drive;
 }
 
 }  // namespace
@@ -203,9 +267,11 @@ ChaosOutcome run_chaos_scene(const ChaosScene& chaos, const ChaosRunOptions& opt
   out.seed = chaos.seed;
   const auto scene = write_chaos_scene(chaos, options.folder);
   const auto refuse = [&](const std::string& message) {
-    out.verdict = message.empty() ? ChaosVerdict::broken : ChaosVerdict::refused;
-    out.kind = message.empty() ? "no reason" : "";
-    out.reason = message;
+    const std::string why = unreadable(message);
+    const bool good = !message.empty() && why.empty();
+    out.verdict = good ? ChaosVerdict::refused : ChaosVerdict::broken;
+    out.kind = good ? "" : (message.empty() ? "no reason" : "message");
+    out.reason = why.empty() ? message : why;
     out.seconds = seconds_since(start);
     return out;
   };
@@ -222,7 +288,8 @@ ChaosOutcome run_chaos_scene(const ChaosScene& chaos, const ChaosRunOptions& opt
   }
   auto built = build(scene.value(), {1});
   if (!built) return refuse(built.error());
-  ChaosRun(scene.value(), chaos.drive, built.value(), out).march();
+  const ChaosDrive drive = options.judge_time ? chaos.drive : without_clock(chaos);
+  ChaosRun(scene.value(), drive, built.value(), out).march();
   out.seconds = seconds_since(start);
   if (options.judge_time && out.own_overshoot > 1 && out.verdict != ChaosVerdict::broken) {
     out.verdict = ChaosVerdict::broken;

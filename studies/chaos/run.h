@@ -21,8 +21,9 @@ const char* to_string(ChaosVerdict verdict);
 struct ChaosOutcome {
   std::uint64_t seed = 0;
   ChaosVerdict verdict = ChaosVerdict::broken;
-  std::string kind;    // of what is broken, one or two words
-  std::string reason;  // the engine's, or the judge's
+  std::string kind;     // of what is broken, one or two words
+  std::string reason;   // the engine's, or the judge's
+  std::string warning;  // of the first step that converged with one
   int steps = 0, asked = 0, iterations = 0;
   double seconds = 0;
   // Beyond a budget in seconds, of wall time, and what of it was work of its own.
@@ -32,8 +33,9 @@ struct ChaosOutcome {
 };
 
 struct ChaosRunOptions {
-  std::string folder;      // where scene.json and its files are written
-  bool judge_time = true;  // an overshoot of more than a second is broken
+  std::string folder;  // where scene.json and its files are written
+  // An overshoot of more than a second is broken. False: budgets count iterations in place of seconds.
+  bool judge_time = true;
 };
 
 ChaosOutcome run_chaos_scene(const ChaosScene& chaos, const ChaosRunOptions& options);

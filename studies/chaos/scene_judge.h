@@ -3,6 +3,7 @@
 #pragma once
 
 #include "scenes/scene.h"
+#include "studies/chaos/distances.h"
 #include "studies/judge.h"
 
 namespace isochor::studies {
@@ -28,20 +29,24 @@ class SceneJudge {
   std::optional<Finding> support(const World& world, std::size_t def) const;
   std::optional<Finding> obstacle(const BuiltScene& built, std::size_t contact) const;
   std::optional<Finding> energy(const World& world);
+  std::optional<Finding> balance(const BuiltScene& built) const;
   double weight_gone_down(const World& world) const;
 
   SceneDef scene_;  // poses read
   StateJudge state_;
   JudgeLimits limits_;
-  std::vector<bool> exact_volume_;             // of a body: its rows keep it
-  std::vector<bool> log_volume_;               // by log J
-  std::vector<std::vector<Index>> supported_;  // nodes of each support that must be at their targets
-  std::vector<std::vector<bool>> held_;        // nodes of each body that some support moves or holds
-  std::vector<std::vector<Index>> touching_;   // nodes of each contact that must stay out of its obstacle
-  double length_ = 1;                          // of the scene [m]
+  std::vector<bool> exact_volume_;                // of a body: its rows keep it
+  std::vector<bool> log_volume_;                  // by log J
+  std::vector<std::vector<Index>> supported_;     // nodes of each support that must be at their targets
+  std::vector<std::vector<bool>> held_;           // nodes of each body that some support moves or holds
+  std::vector<std::vector<Index>> touching_;      // nodes of each contact that must stay out of its obstacle
+  std::vector<std::vector<ConvexPlane>> planes_;  // of obstacles given by surfaces that are convex
+  double length_ = 1;                             // of the scene [m]
   // Energy that may be there: nothing works on the scene but gravity.
   bool isolated_ = false;
   double start_energy_ = 0, most_gone_down_ = 0, energy_noise_ = 0;
+  // Statics where supports alone carry what loads, whose resultant is known, put on the bodies.
+  bool carried_by_supports_ = false;
   std::vector<double> mass_;  // of bodies [kg]
   std::vector<Vec3> center_;
 };
