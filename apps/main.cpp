@@ -151,7 +151,7 @@ int main(int argc, char** argv) {
   try {
     return checked_output(dispatch(argc, argv));
   } catch (const std::bad_alloc&) {
-    return app::end_without_memory();
+    app::end_without_memory();
   } catch (const std::exception& e) {
     std::fprintf(stderr, "isochor: internal error: %s\n", e.what());
   } catch (...) {

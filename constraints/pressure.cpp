@@ -5,6 +5,7 @@
 #include "constraints/surface_nodes.h"
 #include "constraints/surface_pool.h"
 #include "engine/builder.h"
+#include "engine/fingerprint.h"
 
 namespace isochor {
 
@@ -189,6 +190,7 @@ class PressureEffect final : public EffectSource {
  public:
   explicit PressureEffect(PressureDef def) : def_(std::move(def)) {}
   const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
     for (const auto& p : def_.amount.points) {

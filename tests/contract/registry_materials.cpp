@@ -327,6 +327,7 @@ class BeganAt final : public isochor::Material {
   BeganAt(std::shared_ptr<const isochor::Material> material, double J)
       : material_(std::move(material)), J_(J) {}
   std::string_view name() const override { return material_->name(); }
+  void describe(isochor::Fingerprint& f) const override { material_->describe(f); }
   void evaluate(isochor::Want want, const isochor::PointBatch& points,
                 isochor::ResponseBatch& response) const override {
     material_->evaluate(want, began(points), response);
