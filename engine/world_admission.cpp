@@ -33,6 +33,13 @@ double energy_of_motion(const Assembly& assembly, std::span<const Vec3> v, std::
 // True when something that moves by itself (an obstacle on its way) could do work on the bodies: functions or
 // energies differ between the beginning and the end of the increment at the same positions.
 bool World::Impl::moved_from_outside(const SaddleProblem& problem) {
+  // A given multiplier on functions that hold on to something is a load without a potential.
+  const SystemParts& parts = system->parts();
+  const bool without_potential =
+      std::any_of(parts.row_pools.begin(), parts.row_pools.end(), [&](const auto& rows) {
+        return rows->law == RowLaw::prescribed && parts.stencil_pools[at(rows->stencil_pool)]->has_lag();
+      });
+  if (without_potential) return true;
   if (!system->has_bounds() && !system->has_barrier()) return false;
   Assembly& assembly = newton->assembly();
   double energy[2] = {};
