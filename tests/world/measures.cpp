@@ -243,7 +243,8 @@ TEST_CASE("pressures have the potential of the volume they opened") {
 TEST_CASE("a body on a pressure or on gas keeps its total energy while it swings") {
   for (const CavityControl control : {CavityControl::pressure, CavityControl::gas}) {
     INFO((control == CavityControl::gas ? "gas" : "pressure"));
-    Chamber c(control, implicit_midpoint());
+    // Rows of gas must be met at the end of a step, which the midpoint rule does not do.
+    Chamber c(control, control == CavityControl::gas ? generalized_alpha(1) : implicit_midpoint());
     double start = std::nan(""), largest = 0, swing = 0, drift = 0;
     for (int k = 0; k < 60; ++k) {
       must_advance(c.world, 5e-5);
