@@ -1,6 +1,7 @@
 // Pairs of soft bodies whose answer is known by symmetry, over pressures and contrasts of stiffness.
 #include <cmath>
 
+#include "constraints/contact_rows.h"
 #include "isochor/contact.h"
 #include "support/worlds.h"
 
@@ -159,4 +160,43 @@ TEST_CASE("uneven faces that are pressed together mostly find an equilibrium") {
     found += converged ? 1 : 0;
   }
   CHECK(3 * found >= 2 * static_cast<int>(count));
+}
+
+TEST_CASE("a layer that stiffens has a potential, and goes on from its linear part") {
+  ContactRows rows("rows", 1);
+  constexpr double soft = 2e-3, knee = 5;
+  std::vector<double> lambda;
+  for (const double f : {-3.0, 0.0, 0.4, 0.999, 1.001, 1.5, 4.0, 30.0, 1000.0, 1e5}) {
+    rows.add(1, 1, 1, soft);
+    rows.knee.push_back(knee);
+    lambda.push_back(-f * knee);
+  }
+  const std::size_t n = lambda.size();
+  std::vector<double> strain(n), up(n), down(n), tangent(n);
+  const auto at_multipliers = [&](const std::vector<double>& l, std::vector<double>& c,
+                                  std::span<double> slope) { return rows.evaluate_law({}, l, c, slope); };
+  at_multipliers(lambda, strain, tangent);
+  for (std::size_t i = 0; i < n; ++i) {
+    INFO("force over that at the knee " << -lambda[i] / knee);
+    auto plus = lambda, minus = lambda;
+    const double h = 1e-4 * (1 + std::abs(lambda[i]));
+    plus[i] += h;
+    minus[i] -= h;
+    // Alone, as the potentials of the others would drown it.
+    ContactRows one("one", 1);
+    one.add(1, 1, 1, soft);
+    one.knee = {knee};
+    double c = 0;
+    const double slope = (one.evaluate_law({}, {&plus[i], 1}, {&c, 1}, {}) -
+                          one.evaluate_law({}, {&minus[i], 1}, {&c, 1}, {})) /
+                         (2 * h);
+    CHECK(slope == Approx(strain[i]).epsilon(1e-4).margin(1e-12));
+    at_multipliers(plus, up, {});
+    at_multipliers(minus, down, {});
+    CHECK((up[i] - down[i]) / (2 * h) == Approx(tangent[i]).epsilon(1e-3));
+    CHECK(tangent[i] > 0);
+    CHECK(rows.depth(static_cast<Index>(i), lambda[i]) == Approx(std::max(0.0, -strain[i])));
+    if (-lambda[i] <= knee) CHECK(strain[i] == soft * lambda[i]);
+    if (-lambda[i] < 100 * knee) CHECK(-strain[i] < 2.2 * soft * knee);
+  }
 }
