@@ -1,5 +1,7 @@
 // Scene files: JSON, the scene in it, and the world that is built from it where it is small. Files that a
 // scene names are looked for in the folder of the library's scenes.
+#include <algorithm>
+
 #include "fuzz/input.h"
 #include "scenes/library.h"
 #include "scenes/scene_file.h"

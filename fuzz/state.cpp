@@ -2,6 +2,7 @@
 // of zeros is the state as it was saved; longer inputs append, shorter ones truncate where their last byte is
 // odd. What is loaded must be finite and must go on without a fault, and what is refused leaves the world as
 // it was.
+#include <algorithm>
 #include <cmath>
 #include <vector>
 

@@ -1,4 +1,5 @@
 // TetGen's pairs of files: the input is the .node file, a line "====" and the .ele file.
+#include <algorithm>
 #include <string_view>
 
 #include "fuzz/input.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <ctime>
 #include <tuple>
 
@@ -140,8 +141,12 @@ bool ChaosRun::take(const StepReport& report, double before, std::uint64_t hash)
   }
   if (report.status != StepStatus::converged && stayed && world.state_hash() != hash)
     return broken("changed state", "a step that was not taken changed the state: " + report.reason);
-  if (report.status == StepStatus::converged && stayed && !scene_.analysis.path_step)
-    return broken("no step", "a step converged and the time is where it was");
+  // In full, to the rounding of its parts.
+  const bool whole = std::abs(world.time() - before - plan_.h) <= 1e-9 * (plan_.h + std::abs(before));
+  if (report.status == StepStatus::converged && !whole && !scene_.analysis.path_step) {
+    return broken("no step", "a step of " + std::to_string(plan_.h) + " converged and the time went from " +
+                                 std::to_string(before) + " to " + std::to_string(world.time()));
+  }
   if (!stayed && broken(judge_.accepted(built_, warnings_of(world, report)))) return true;
   if (report.status == StepStatus::converged) {
     ++out_.steps;
@@ -177,6 +182,12 @@ void ChaosRun::march() {
     if (drive_.wall_seconds > 0)
       overshot(seconds_since(start) - drive_.wall_seconds,
                processor_seconds() - processor - drive_.wall_seconds);
+    const int allowed = drive_.budget_iterations;
+    if (budgeted(step) && allowed > 0 && report.iterations > allowed) {
+      broken("overshoot",
+             std::to_string(report.iterations) + " iterations within a budget of " + std::to_string(allowed));
+      return;
+    }
     const bool over = take(report, before, hash);
     std::tie(out_.min_J, out_.inverted) = judge_.smallest_J(world);
     if (out_.verdict == ChaosVerdict::broken) return;
