@@ -156,11 +156,11 @@ TortureResult TortureBench::judge(TortureResult out, const StepReport& last, boo
   out.volume_error = m.volume_error;
   out.min_J = m.min_J;
   // A start that is crushed or turned over has no guard until it has come right.
-  const bool guarded = !lives_through_inversion_ && settings_.poisson >= 0.49;
+  const bool guarded = !lives_through_inversion_;
   const StateJudge state(
       *world_, {simple_promise(*world_, body_, settings_.element, lives_through_inversion_, guarded)});
   std::vector<std::string> said = world_->warnings();
-  said.push_back(last.reason);
+  said.push_back(last.warning);
   // The state of a run that was refused at its start is the start.
   const bool moved = out.reached > 0 && last.status != StepStatus::invalid;
   if (const auto wrong = moved ? state.accepted(*world_, said, {}) : state.finite(*world_)) {

@@ -26,7 +26,7 @@ double processor_seconds() {
 // Warnings of a world, and what its last report says beside the numbers.
 std::vector<std::string> warnings_of(const World& world, const StepReport& report) {
   std::vector<std::string> said = world.warnings();
-  if (!report.reason.empty()) said.push_back(report.reason);
+  if (!report.warning.empty()) said.push_back(report.warning);
   return said;
 }
 
@@ -150,7 +150,14 @@ bool ChaosRun::take(const StepReport& report, double before, std::uint64_t hash)
   if (!stayed && broken(judge_.accepted(built_, warnings_of(world, report)))) return true;
   if (report.status == StepStatus::converged) {
     ++out_.steps;
-    return false;
+    if (out_.warning.empty()) out_.warning = report.warning;
+    const auto [min_J, inverted] = judge_.smallest_J(world);
+    if (report.inverted_cells == inverted && std::abs(report.min_J - min_J) <= 1e-6 * (1 + std::abs(min_J)))
+      return false;
+    return broken("measures", "the report says min J " + std::to_string(report.min_J) + " and " +
+                                  std::to_string(report.inverted_cells) +
+                                  " inverted cells, where there are " + std::to_string(min_J) + " and " +
+                                  std::to_string(inverted));
   }
   out_.verdict = report.status == StepStatus::invalid ? ChaosVerdict::refused : ChaosVerdict::stopped;
   out_.reason = report.reason;
@@ -163,16 +170,13 @@ void ChaosRun::march() {
   const auto start = Clock::now();
   const double processor = processor_seconds();
   if (drive_.wall_seconds > 0) {
-    world.on_progress([&](const ProgressInfo&) {
-      if (seconds_since(start) > drive_.wall_seconds) world.cancel();
-    });
+    world.stop_when([&] { return seconds_since(start) > drive_.wall_seconds; });
   }
   out_.verdict = ChaosVerdict::solved;
   for (int step = 0; step < plan_.steps; ++step) {
     if (reload(step)) return;
     const double before = world.time();
     const std::uint64_t hash = world.state_hash();
-    if (drive_.wall_seconds > 0 && seconds_since(start) > drive_.wall_seconds) world.cancel();
     const auto step_start = Clock::now();
     const double step_processor = processor_seconds();
     const StepReport report = next(world, step);
@@ -195,9 +199,9 @@ void ChaosRun::march() {
     if (over || out_.verdict == ChaosVerdict::broken) return;
     if (scene_.analysis.path_step && world.time() >= scene_.analysis.duration) break;
   }
-  if (out_.inverted > 0) {
+  if (!out_.warning.empty()) {
     out_.verdict = ChaosVerdict::told;
-    out_.reason = std::to_string(out_.inverted) + " cells are inverted, and a warning says so";
+    out_.reason = out_.warning;
   }
 }
 

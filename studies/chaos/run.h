@@ -21,8 +21,9 @@ const char* to_string(ChaosVerdict verdict);
 struct ChaosOutcome {
   std::uint64_t seed = 0;
   ChaosVerdict verdict = ChaosVerdict::broken;
-  std::string kind;    // of what is broken, one or two words
-  std::string reason;  // the engine's, or the judge's
+  std::string kind;     // of what is broken, one or two words
+  std::string reason;   // the engine's, or the judge's
+  std::string warning;  // of the first step that converged with one
   int steps = 0, asked = 0, iterations = 0;
   double seconds = 0;
   // Beyond a budget in seconds, of wall time, and what of it was work of its own.

@@ -46,11 +46,9 @@ const VolumeRows* rows_of(const SceneDef& scene, std::size_t body) {
   return nullptr;
 }
 
-bool is_guarded(const SceneBody& body, const MaterialDef& m) {
+bool is_guarded(const SceneBody& body) {
   if (body.element != Element::tet4_edge_smoothed) return false;
-  if (body.guard_stiffness) return *body.guard_stiffness > 0;
-  if (m.poisson_field.given()) return false;  // some of its cells are
-  return m.constants.poisson >= 0.49;
+  return body.guard_stiffness.value_or(1) > 0;
 }
 
 std::vector<BodyPromise> promises(const SceneDef& scene, const BuiltScene& built) {
@@ -68,7 +66,7 @@ std::vector<BodyPromise> promises(const SceneDef& scene, const BuiltScene& built
     for (const std::string& region : regions) {
       const MaterialDef& m = material_of(body, region);
       promise.law_needs_J.push_back(law_needs_J(m.law));
-      promise.cell_needs_J.push_back(is_guarded(body, m) || log_rows);
+      promise.cell_needs_J.push_back(is_guarded(body) || log_rows);
     }
     all.push_back(std::move(promise));
   }
