@@ -164,6 +164,46 @@ bool is_isolated(const SceneDef& s) {
   return !driven && !squeezed && std::none_of(s.dirichlet.begin(), s.dirichlet.end(), moves);
 }
 
+// Rest area of a surface of flat triangles; nothing for other faces.
+std::optional<double> area_of(const Mesh& mesh, const std::string& surface) {
+  if (mesh.cell_type != CellType::tet4) return {};
+  double area = 0;
+  for (const MeshSurface& s : mesh.surfaces) {
+    if (s.name != surface) continue;
+    for (std::size_t f = 0; f + 3 <= s.faces.size(); f += 3) {
+      const auto x = [&](std::size_t k) { return mesh.nodes[static_cast<std::size_t>(s.faces[f + k])]; };
+      area += 0.5 * length(cross(x(1) - x(0), x(2) - x(0)));
+    }
+  }
+  return area;
+}
+
+bool is_carried_by_supports(const SceneDef& s, const BuiltScene& built) {
+  if (s.analysis.type != AnalysisType::statics || !s.contacts.empty()) return false;
+  const bool from_outside =
+      std::any_of(s.cables.begin(), s.cables.end(), [](const CableDef& c) { return c.from || c.to; });
+  // Chambers that are open push on one side more than on the other, and so does the weight of a liquid.
+  if (from_outside || !s.cavities.empty()) return false;
+  return std::all_of(s.tractions.begin(), s.tractions.end(), [&](const TractionDef& t) {
+    const bool total = !(t.total_force == Vec3{});
+    return total ||
+           area_of(built.world.mesh(built.bodies[static_cast<std::size_t>(t.body)]), t.surface).has_value();
+  });
+}
+
+// Supports by rows report their force as gauges.
+Vec3 force_of(const World& world, const DirichletDef& support, EffectId id) {
+  if (support.treatment == SupportTreatment::eliminated) return world.reaction(id)[0];
+  Vec3 force{};
+  for (const Gauge& g : world.gauges()) {
+    if (g.effect != support.name) continue;
+    for (int k = 0; k < 3; ++k) {
+      if (g.quantity == std::string("force_") + "xyz"[k]) force[k] = g.value;
+    }
+  }
+  return force;
+}
+
 SceneDef with_poses(SceneDef scene, const BuiltScene& built) {
   for (DirichletDef& d : scene.dirichlet) {
     if (d.bone.file.empty()) continue;
@@ -183,6 +223,7 @@ SceneJudge::SceneJudge(const SceneDef& scene, const BuiltScene& built)
   // Its rows are met in the middle of a step; what the end misses is of second order, and this is no more.
   if (a.type == AnalysisType::dynamics && a.scheme == SchemeWord::implicit_midpoint) limits_.rows = 0.1;
   isolated_ = is_isolated(scene_);
+  carried_by_supports_ = is_carried_by_supports(scene_, built);
   Vec3 lower{HUGE_VAL, HUGE_VAL, HUGE_VAL}, upper = -lower;
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
     watch_volume(b);
@@ -223,7 +264,7 @@ void SceneJudge::watch_energy(const BuiltScene& built, std::size_t b) {
   const double volume = state_.shape(built.world, b).rest_volume, density = materials.front().density;
   const bool one_density = std::all_of(materials.begin(), materials.end(),
                                        [&](const MaterialDef& m) { return m.density == density; });
-  if (!one_density && !(scene_.gravity == Vec3{})) isolated_ = false;
+  if (!one_density && !(scene_.gravity == Vec3{})) isolated_ = carried_by_supports_ = false;
   mass_.push_back(density * volume);
   center_.push_back(built.world.measures(built.bodies[b]).center_of_mass);
   double stiff = 0;
@@ -346,6 +387,34 @@ std::optional<Finding> SceneJudge::energy(const World& world) {
                                " J to " + number(now) + " J (weights went down by " + number(fallen) + " J)"};
 }
 
+// The forces of all supports add up to those of all loads.
+std::optional<Finding> SceneJudge::balance(const BuiltScene& built) const {
+  if (!carried_by_supports_ || std::isinf(limits_.rows)) return {};
+  const World& world = built.world;
+  const double t = world.time();
+  Vec3 sum{};
+  double scale = 0;
+  const auto add = [&](const Vec3& force) {
+    sum += force;
+    scale += length(force);
+  };
+  for (std::size_t d = 0; d < scene_.dirichlet.size(); ++d)
+    add(force_of(world, scene_.dirichlet[d], built.dirichlet[d]));
+  for (std::size_t b = 0; b < mass_.size(); ++b)
+    add(evaluate(scene_.gravity_amount, t) * mass_[b] * scene_.gravity);
+  for (const PointForceDef& f : scene_.forces) add(evaluate(f.amount, t) * f.force);
+  for (const TractionDef& d : scene_.tractions) {
+    const Mesh& mesh = world.mesh(built.bodies[static_cast<std::size_t>(d.body)]);
+    const bool total = !(d.total_force == Vec3{});
+    add(evaluate(d.amount, t) * (total ? d.total_force : area_of(mesh, d.surface).value_or(0) * d.traction));
+  }
+  // Forces inside may be far larger than what goes in and out; their rounding is left over.
+  const double inside = energy_noise_ / length_;
+  if (length(sum) <= std::max(1e-6, 100 * scene_.analysis.force_tolerance) * scale + inside) return {};
+  return Finding{"balance", "supports and loads add up to " + number(length(sum)) + " N, of forces of " +
+                                number(scale) + " N in all"};
+}
+
 std::optional<Finding> SceneJudge::accepted(const BuiltScene& built, std::span<const std::string> said) {
   if (auto wrong = state_.accepted(built.world, said, limits_)) return wrong;
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
@@ -357,6 +426,7 @@ std::optional<Finding> SceneJudge::accepted(const BuiltScene& built, std::span<c
   for (std::size_t c = 0; c < scene_.contacts.size(); ++c) {
     if (auto wrong = obstacle(built, c)) return wrong;
   }
+  if (auto wrong = balance(built)) return wrong;
   return energy(built.world);
 }
 

@@ -28,6 +28,7 @@ class SceneJudge {
   std::optional<Finding> support(const World& world, std::size_t def) const;
   std::optional<Finding> obstacle(const BuiltScene& built, std::size_t contact) const;
   std::optional<Finding> energy(const World& world);
+  std::optional<Finding> balance(const BuiltScene& built) const;
   double weight_gone_down(const World& world) const;
 
   SceneDef scene_;  // poses read
@@ -42,6 +43,8 @@ class SceneJudge {
   // Energy that may be there: nothing works on the scene but gravity.
   bool isolated_ = false;
   double start_energy_ = 0, most_gone_down_ = 0, energy_noise_ = 0;
+  // Statics where supports alone carry what loads, whose resultant is known, put on the bodies.
+  bool carried_by_supports_ = false;
   std::vector<double> mass_;  // of bodies [kg]
   std::vector<Vec3> center_;
 };
