@@ -31,7 +31,29 @@ double box_distance(std::initializer_list<double> d) {
 
 }  // namespace
 
-std::optional<double> distance_to(const Obstacle& o, double t, const Vec3& x) {
+std::vector<ConvexPlane> planes_of(const TriangleSurface& surface) {
+  std::vector<ConvexPlane> planes;
+  Vec3 middle{};
+  double extent = 0;
+  for (const Vec3& p : surface.points) middle += (1.0 / static_cast<double>(surface.points.size())) * p;
+  for (const Vec3& p : surface.points) extent = std::max(extent, length(p - middle));
+  for (std::size_t k = 0; k + 3 <= surface.triangles.size(); k += 3) {
+    const auto p = [&](std::size_t c) {
+      return surface.points[static_cast<std::size_t>(surface.triangles[k + c])];
+    };
+    Vec3 n = cross(p(1) - p(0), p(2) - p(0));
+    n = (1 / length(n)) * n;
+    if (dot(n, p(0) - middle) < 0) n = -n;
+    planes.push_back({n, dot(n, p(0))});
+    for (const Vec3& other : surface.points) {
+      if (dot(n, other) > planes.back().distance + 1e-9 * extent) return {};
+    }
+  }
+  return planes;
+}
+
+std::optional<double> distance_to(const Obstacle& o, double t, const Vec3& x,
+                                  std::span<const ConvexPlane> planes) {
   Vec3 point = x;
   if (!o.motion.keys.empty()) {
     const Pose first = o.motion.keys.front(), now = pose_at(o.motion, t);
@@ -56,9 +78,15 @@ std::optional<double> distance_to(const Obstacle& o, double t, const Vec3& x) {
       return box_distance({std::abs(px) - 0.5 * o.size.x + r, std::abs(py) - 0.5 * o.size.y + r,
                            std::abs(pz) - 0.5 * o.size.z + r}) -
              r;
-    default:
-      return {};
+    case ObstacleShape::mesh:
+    case ObstacleShape::distance_field:
+      break;
   }
+  if (planes.empty()) return {};
+  double deepest = -HUGE_VAL;
+  for (const ConvexPlane& plane : planes)
+    deepest = std::max(deepest, dot(plane.normal, {px, py, pz}) - plane.distance);
+  return deepest - r;
 }
 
 }  // namespace isochor::studies

@@ -102,6 +102,7 @@ void draft_drive(ChaosDraft& draft) {
     case 2:
     case 3:
       drive.wall_seconds = random.pick({0.02, 0.1, 0.3, 1.0, 2.0});
+      drive.cancels = random.chance(0.3);
       break;
     default:
       break;

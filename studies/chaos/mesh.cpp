@@ -84,9 +84,12 @@ void Grid::cut() {
     chamber_ = true;
     // A closed chamber, or one that is open at a side.
     const bool open = random_.chance(0.3);
+    // Blocks left standing in it, so that its walls meet at edges of four faces.
+    const bool ragged = random_.chance(0.3);
     for (int k = 1; k < n_[2] - 1; ++k) {
       for (int j = 1; j < n_[1] - 1; ++j) {
-        for (int i = 1; i < n_[0] - (open ? 0 : 1); ++i) solid_[block(i, j, k)] = false;
+        for (int i = 1; i < n_[0] - (open ? 0 : 1); ++i)
+          solid_[block(i, j, k)] = ragged && !(i == 1 && j == 1 && k == 1) && random_.chance(0.4);
       }
     }
     return;

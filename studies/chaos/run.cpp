@@ -30,6 +30,18 @@ std::vector<std::string> warnings_of(const World& world, const StepReport& repor
   return said;
 }
 
+// What makes a message no sentence for people; empty where nothing does.
+std::string unreadable(const std::string& text) {
+  if (text.size() > 2000) return "a message has " + std::to_string(text.size()) + " characters";
+  std::size_t digits = 0;
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 && c != '\n') return "a message has control characters: " + text;
+    digits = c >= '0' && c <= '9' ? digits + 1 : 0;
+    if (digits > 20) return "a message has a number of more than twenty digits: " + text;
+  }
+  return {};
+}
+
 class ChaosRun {
  public:
   ChaosRun(const SceneDef& scene, const ChaosDrive& drive, BuiltScene& built, ChaosOutcome& out)
@@ -130,6 +142,8 @@ bool ChaosRun::take(const StepReport& report, double before, std::uint64_t hash)
   World& world = built_.world;
   out_.iterations += report.iterations;
   const bool stayed = world.time() == before;
+  if (const std::string why = unreadable(report.reason + " " + report.warning); !why.empty())
+    return broken("message", why);
   if (report.status != StepStatus::converged && report.reason.empty())
     return broken("no reason", "a step that did not converge says no reason");
   if (report.status == StepStatus::rejected && report.reason.find("cancelled") != std::string::npos)
@@ -170,13 +184,22 @@ void ChaosRun::march() {
   const auto start = Clock::now();
   const double processor = processor_seconds();
   if (drive_.wall_seconds > 0) {
-    world.stop_when([&] { return seconds_since(start) > drive_.wall_seconds; });
+    const auto late = [&] { return seconds_since(start) > drive_.wall_seconds; };
+    if (drive_.cancels) {
+      world.on_progress([&world, late](const ProgressInfo&) {
+        if (late()) world.cancel();
+      });
+    } else {
+      world.stop_when(late);
+    }
   }
   out_.verdict = ChaosVerdict::solved;
   for (int step = 0; step < plan_.steps; ++step) {
     if (reload(step)) return;
     const double before = world.time();
     const std::uint64_t hash = world.state_hash();
+    if (drive_.cancels && drive_.wall_seconds > 0 && seconds_since(start) > drive_.wall_seconds)
+      world.cancel();
     const auto step_start = Clock::now();
     const double step_processor = processor_seconds();
     const StepReport report = next(world, step);
@@ -220,9 +243,11 @@ ChaosOutcome run_chaos_scene(const ChaosScene& chaos, const ChaosRunOptions& opt
   out.seed = chaos.seed;
   const auto scene = write_chaos_scene(chaos, options.folder);
   const auto refuse = [&](const std::string& message) {
-    out.verdict = message.empty() ? ChaosVerdict::broken : ChaosVerdict::refused;
-    out.kind = message.empty() ? "no reason" : "";
-    out.reason = message;
+    const std::string why = unreadable(message);
+    const bool good = !message.empty() && why.empty();
+    out.verdict = good ? ChaosVerdict::refused : ChaosVerdict::broken;
+    out.kind = good ? "" : (message.empty() ? "no reason" : "message");
+    out.reason = why.empty() ? message : why;
     out.seconds = seconds_since(start);
     return out;
   };

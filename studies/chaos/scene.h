@@ -21,7 +21,8 @@ struct ChaosDrive {
   bool single_increments = false;  // step() in place of advance()
   int budget_iterations = 0;       // of the first half of the steps, each; 0: none
   double budget_seconds = 0;       // likewise
-  double wall_seconds = 0;         // of the whole run, which is cancelled then; 0: none
+  double wall_seconds = 0;         // of the whole run, which is stopped then; 0: none
+  bool cancels = false;            // by cancel() from a report of progress; else by stop_when()
   int reload_after = -1;           // steps, then the state is saved and loaded into a new world
 };
 

@@ -294,6 +294,11 @@ void SceneJudge::watch_supports(const BuiltScene& built) {
 void SceneJudge::watch_contacts(const BuiltScene& built) {
   for (const ContactDef& c : scene_.contacts) {
     touching_.emplace_back();
+    planes_.emplace_back();
+    if (!c.obstacle.file.empty()) {
+      if (const auto read = read_surface(path_in(scene_.folder, c.obstacle.file), c.obstacle.scale))
+        planes_.back() = planes_of(read.value());
+    }
     if (!c.against.empty() || !c.rigid.empty() || c.compliance > 0 || !c.surfaces.empty()) continue;
     const auto b = static_cast<std::size_t>(c.body);
     for (const Index i : boundary_corners(built.world.mesh(built.bodies[b]))) {
@@ -352,13 +357,14 @@ std::optional<Finding> SceneJudge::obstacle(const BuiltScene& built, std::size_t
   double deepest = 0;
   Index node = 0;
   for (const Index i : touching_[contact]) {
-    const auto d = distance_to(c.obstacle, world.time(), x[static_cast<std::size_t>(i)]);
+    const auto d = distance_to(c.obstacle, world.time(), x[static_cast<std::size_t>(i)], planes_[contact]);
     if (d && -*d > deepest) {
       deepest = -*d;
       node = i;
     }
   }
-  if (deepest <= length_ * std::max(1e-7, 10 * limits_.rows)) return {};
+  // A field is as sharp as its spacing.
+  if (deepest <= length_ * std::max(1e-7, 10 * limits_.rows) + c.obstacle.spacing) return {};
   return Finding{"penetration", "node " + std::to_string(node + 1) + " is " + number(deepest) +
                                     " m inside the obstacle of \"" + c.name + "\", which is hard"};
 }

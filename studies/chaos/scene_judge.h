@@ -3,6 +3,7 @@
 #pragma once
 
 #include "scenes/scene.h"
+#include "studies/chaos/distances.h"
 #include "studies/judge.h"
 
 namespace isochor::studies {
@@ -34,12 +35,13 @@ class SceneJudge {
   SceneDef scene_;  // poses read
   StateJudge state_;
   JudgeLimits limits_;
-  std::vector<bool> exact_volume_;             // of a body: its rows keep it
-  std::vector<bool> log_volume_;               // by log J
-  std::vector<std::vector<Index>> supported_;  // nodes of each support that must be at their targets
-  std::vector<std::vector<bool>> held_;        // nodes of each body that some support moves or holds
-  std::vector<std::vector<Index>> touching_;   // nodes of each contact that must stay out of its obstacle
-  double length_ = 1;                          // of the scene [m]
+  std::vector<bool> exact_volume_;                // of a body: its rows keep it
+  std::vector<bool> log_volume_;                  // by log J
+  std::vector<std::vector<Index>> supported_;     // nodes of each support that must be at their targets
+  std::vector<std::vector<bool>> held_;           // nodes of each body that some support moves or holds
+  std::vector<std::vector<Index>> touching_;      // nodes of each contact that must stay out of its obstacle
+  std::vector<std::vector<ConvexPlane>> planes_;  // of obstacles given by surfaces that are convex
+  double length_ = 1;                             // of the scene [m]
   // Energy that may be there: nothing works on the scene but gravity.
   bool isolated_ = false;
   double start_energy_ = 0, most_gone_down_ = 0, energy_noise_ = 0;
