@@ -56,7 +56,7 @@ void add_study(CLI::App& top, app::StudyArguments& a) {
       ->check(CLI::PositiveNumber);
   c->add_option("--jobs", a.jobs, "chaos: seeds at a time")->check(CLI::Range(1, 256));
   c->add_flag("--keep", a.keep, "chaos: keep the scenes of all seeds, not only of broken ones");
-  c->add_flag("--untimed", a.untimed, "chaos: report overshot budgets, and do not count them as broken");
+  c->add_flag("--untimed", a.untimed, "chaos: budgets count iterations in place of seconds, the same on every machine");
   c->add_flag("--quiet", a.quiet, "Print errors only");
   c->footer("A study that is stopped (Ctrl-C) leaves what it has; the same command goes on from there.");
 }

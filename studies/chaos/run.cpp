@@ -75,7 +75,9 @@ class ChaosRun {
     // Other work on the machine is not the engine's fault.
     out_.own_overshoot = std::max(out_.own_overshoot, std::min(wall, processor));
   }
-  bool timed() const { return drive_.budget_seconds > 0 || drive_.wall_seconds > 0; }
+  bool timed() const {
+    return drive_.budget_seconds > 0 || drive_.wall_seconds > 0 || drive_.cancel_after > 0;
+  }
 
   const SceneDef& scene_;
   const ChaosDrive& drive_;
@@ -86,6 +88,7 @@ class ChaosRun {
   std::optional<BuiltScene> reloaded_;
   std::uint64_t reloaded_before_ = 0;
   bool unfinished_ = false;
+  int reports_ = 0;  // of progress
 };
 
 bool ChaosRun::broken(const std::optional<Finding>& finding) {
@@ -153,6 +156,7 @@ bool ChaosRun::take(const StepReport& report, double before, std::uint64_t hash)
     ++out_.steps;
     return broken(judge_.finite(built_));
   }
+  const bool given_back = report.status == StepStatus::rejected && stayed && budgeted(out_.steps);
   if (report.status != StepStatus::converged && stayed && world.state_hash() != hash)
     return broken("changed state", "a step that was not taken changed the state: " + report.reason);
   // In full, to the rounding of its parts.
@@ -173,6 +177,12 @@ bool ChaosRun::take(const StepReport& report, double before, std::uint64_t hash)
                                   " inverted cells, where there are " + std::to_string(min_J) + " and " +
                                   std::to_string(inverted));
   }
+  if (given_back) {
+    // A budget that leaves nothing to keep is no reason why later steps should not go on.
+    unfinished_ = true;
+    ++out_.steps;
+    return false;
+  }
   out_.verdict = report.status == StepStatus::invalid ? ChaosVerdict::refused : ChaosVerdict::stopped;
   out_.reason = report.reason;
   after_budget(report);
@@ -183,6 +193,11 @@ void ChaosRun::march() {
   World& world = built_.world;
   const auto start = Clock::now();
   const double processor = processor_seconds();
+  if (drive_.cancel_after > 0) {
+    world.on_progress([&world, this](const ProgressInfo&) {
+      if (++reports_ == drive_.cancel_after) world.cancel();
+    });
+  }
   if (drive_.wall_seconds > 0) {
     const auto late = [&] { return seconds_since(start) > drive_.wall_seconds; };
     if (drive_.cancels) {
@@ -230,6 +245,15 @@ void ChaosRun::march() {
   }
 }
 
+// The same seed with iterations in place of seconds, so that it does the same on every machine.
+ChaosDrive without_clock(const ChaosScene& chaos) {
+  ChaosDrive drive = chaos.drive;
+  if (drive.budget_seconds > 0) drive.budget_iterations = static_cast<int>(1 + chaos.seed % 4);
+  if (drive.wall_seconds > 0) drive.cancel_after = static_cast<int>(1 + chaos.seed % 40);
+  drive.budget_seconds = drive.wall_seconds = 0;
+  return drive;
+}
+
 }  // namespace
 
 const char* to_string(ChaosVerdict verdict) {
@@ -264,7 +288,8 @@ ChaosOutcome run_chaos_scene(const ChaosScene& chaos, const ChaosRunOptions& opt
   }
   auto built = build(scene.value(), {1});
   if (!built) return refuse(built.error());
-  ChaosRun(scene.value(), chaos.drive, built.value(), out).march();
+  const ChaosDrive drive = options.judge_time ? chaos.drive : without_clock(chaos);
+  ChaosRun(scene.value(), drive, built.value(), out).march();
   out.seconds = seconds_since(start);
   if (options.judge_time && out.own_overshoot > 1 && out.verdict != ChaosVerdict::broken) {
     out.verdict = ChaosVerdict::broken;

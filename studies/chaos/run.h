@@ -33,8 +33,9 @@ struct ChaosOutcome {
 };
 
 struct ChaosRunOptions {
-  std::string folder;      // where scene.json and its files are written
-  bool judge_time = true;  // an overshoot of more than a second is broken
+  std::string folder;  // where scene.json and its files are written
+  // An overshoot of more than a second is broken. False: budgets count iterations in place of seconds.
+  bool judge_time = true;
 };
 
 ChaosOutcome run_chaos_scene(const ChaosScene& chaos, const ChaosRunOptions& options);

@@ -23,6 +23,7 @@ struct ChaosDrive {
   double budget_seconds = 0;       // likewise
   double wall_seconds = 0;         // of the whole run, which is stopped then; 0: none
   bool cancels = false;            // by cancel() from a report of progress; else by stop_when()
+  int cancel_after = 0;            // reports of progress: cancel() is called from the last of them; 0: not
   int reload_after = -1;           // steps, then the state is saved and loaded into a new world
 };
 
