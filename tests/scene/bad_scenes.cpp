@@ -54,6 +54,10 @@ TEST_CASE("wrong types, missing and contradicting values are named") {
   CHECK_THAT(error_with("analysis.steps=2.5"), Contains("whole number"));
   CHECK_THAT(error_with("analysis.steps=0"), Contains("analysis.steps = 0"));
   CHECK_THAT(error_with("analysis.step=0.5"), Contains("both \"steps\" and \"step\""));
+  CHECK_THAT(error_with("analysis={\"duration\":1,\"step\":0.3}"), Contains("does not divide the duration"));
+  CHECK(error_with("analysis={\"duration\":1,\"step\":0.333333}") == "(none)");
+  CHECK_THAT(build_error_with("analysis.row_tolerance=-1"), Contains("tolerance"));
+  CHECK_THAT(error_with("metrics[0].tolerance=-0.1"), Contains("metrics[0].tolerance"));
   CHECK_THAT(error_with("analysis.duration=-1"), Contains("analysis.duration = -1"));
   CHECK_THAT(error_with("gravity=9.8"), Contains("gravity: expected three numbers"));
   CHECK_THAT(error_with("gravity=[0,\"a\",0]"), Contains("gravity[1]: expected a number"));
