@@ -96,7 +96,7 @@ TEST_CASE("two equal bodies meet where half of them meets its plane of symmetry,
 // A stiff block with sharp rims that is pressed into a soft slab and shoved: points of the slab lie beside
 // the rim and exactly level with its corners.
 TEST_CASE("contrasts of stiffness from one to a million take about the same work") {
-  for (const double contrast : {1.0, 1e2, 1e4, 1e5, 1e6}) {
+  for (const double contrast : {1.0, 1e3, 1e6}) {
     World world = test::make_world(test::static_options());
     const BodyId slab =
         test::add_body(world, test::block({-0.5, -0.5, 0}, {0.5, 0.5, 0.5}, {10, 10, 3}, CellType::hex8),

@@ -37,8 +37,9 @@ bool tells(const std::vector<std::string>& warnings, const std::string& what) {
 }  // namespace
 
 TEST_CASE("a contact that never touches is told at the end, one that touches is not") {
-  for (const auto& [motion, extra] :
-       {std::pair<std::string, std::string>{"[0.5, 0.5, 1.5]", ""}, {"[9, 0.5, 1.2]", ""}, {"[0.5, 0.5, 1.15]", ""}}) {
+  for (const auto& [motion, extra] : {std::pair<std::string, std::string>{"[0.5, 0.5, 1.5]", ""},
+                                      {"[9, 0.5, 1.2]", ""},
+                                      {"[0.5, 0.5, 1.15]", ""}}) {
     INFO(motion);
     CHECK(tells(said(motion, extra), "\"press\" never touched"));
   }
