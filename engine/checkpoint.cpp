@@ -77,18 +77,22 @@ void describe_body(const BodyData& body, std::vector<ScenePart>& parts) {
 std::string difference(const std::vector<ScenePart>& saved, const std::vector<ScenePart>& here) {
   constexpr std::size_t most = 4;
   std::vector<std::string> all;
-  const auto in = [](const std::vector<ScenePart>& list, const ScenePart& part) {
-    return std::find_if(list.begin(), list.end(), [&](const ScenePart& p) { return p.what == part.what; });
+  // Names may repeat: the n-th of a name is held against the n-th of that name.
+  const auto counterpart = [](const std::vector<ScenePart>& from, std::size_t i,
+                              const std::vector<ScenePart>& to) {
+    const auto same = [&](const ScenePart& p) { return p.what == from[i].what; };
+    auto left = std::count_if(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(i), same);
+    return std::find_if(to.begin(), to.end(), [&](const ScenePart& p) { return same(p) && left-- == 0; });
   };
-  for (const ScenePart& part : here) {
-    const auto other = in(saved, part);
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    const auto other = counterpart(here, i, saved);
     if (other == saved.end())
-      all.push_back(part.what + " (the state has none)");
-    else if (other->fingerprint != part.fingerprint)
-      all.push_back(part.what);
+      all.push_back(here[i].what + " (the state has none)");
+    else if (other->fingerprint != here[i].fingerprint)
+      all.push_back(here[i].what);
   }
-  for (const ScenePart& part : saved) {
-    if (in(here, part) == here.end()) all.push_back(part.what + " (this world has none)");
+  for (std::size_t i = 0; i < saved.size(); ++i) {
+    if (counterpart(saved, i, here) == here.end()) all.push_back(saved[i].what + " (this world has none)");
   }
   if (all.empty() && saved.size() != here.size()) all.emplace_back("the number of its parts");
   for (std::size_t i = 0; all.empty() && i < here.size(); ++i) {
