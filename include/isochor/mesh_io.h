@@ -16,8 +16,8 @@ struct MeshReadOptions {
 };
 
 // Reads Gmsh 2.2 and 4.1 (.msh, ASCII and binary), VTK legacy (.vtk), VTK XML (.vtu), TetGen (.node/.ele with
-// optional .face), Medit (.mesh) and Abaqus (.inp, one part). The format is told from the content first, the extension second.
-// Inverted cells are turned over; everything else is left for check_mesh.
+// optional .face), Medit (.mesh) and Abaqus (.inp, one part). The format is told from the content first, the
+// extension second. Inverted cells are turned over; everything else is left for check_mesh.
 Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options = {});
 
 enum class Severity : std::uint8_t { note, warning, error };
