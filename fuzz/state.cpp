@@ -1,11 +1,14 @@
-// Saved states: the first byte chooses a world, the rest is XORed into its own saved state, so that an input
-// of zeros is the state as it was saved; longer inputs append, shorter ones truncate where their last byte is
-// odd. What is loaded must be finite and must go on without a fault, and what is refused leaves the world as
-// it was.
+// Saved states: the first byte chooses a world, and from 128 on a checksum that fits; the rest is XORed into
+// its own saved state, so that an input of zeros is the state as it was saved; longer inputs append, shorter
+// ones truncate where their last byte is odd. What is loaded must be finite and must go on without a fault,
+// and what is refused leaves the world as it was.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <span>
 #include <vector>
 
+#include "engine/base.h"
 #include "fuzz/input.h"
 #include "scenes/scene.h"
 
@@ -81,6 +84,16 @@ std::vector<std::byte> damaged(const std::vector<std::byte>& saved, const std::u
   return blob;
 }
 
+// Ends the bytes with the checksum that fits them, so that what lies behind it is reached.
+void seal(std::vector<std::byte>& blob) {
+  constexpr std::size_t size = sizeof(std::uint64_t);
+  if (blob.size() < size) return;
+  Hash h;
+  h.add(std::span<const std::byte>(blob).first(blob.size() - size));
+  const std::uint64_t value = h.value();
+  std::memcpy(blob.data() + blob.size() - size, &value, size);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -90,7 +103,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   World& world = start.built.world;
   fuzz::require(world.load(start.saved).ok(), "a world refuses its own saved state");
   const std::uint64_t before = world.state_hash();
-  const auto blob = damaged(start.saved, data + 1, size - 1);
+  auto blob = damaged(start.saved, data + 1, size - 1);
+  if ((data[0] & 128) != 0) seal(blob);
   if (const auto loaded = world.load(blob); !loaded) {
     fuzz::require_message(loaded.error());
     fuzz::require(world.state_hash() == before, "a state that was refused changed the world");
