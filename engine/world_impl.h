@@ -129,6 +129,8 @@ struct World::Impl {
     // Bodies in motion go on beyond all of these while that leads downhill.
     bool persistent = false;
   };
+  void keep_stencils(std::vector<std::shared_ptr<const StencilPool>> pools, const SaddleProblem& problem,
+                     const Allowance& allowance, SaddleReport& report);
   SaddleProblem problem_at(double t);
   bool look_back(double t, double h);
   SaddleOptions saddle_options(const Allowance& allowance) const;

@@ -96,11 +96,11 @@ bool World::Impl::give_back_unfinished(StepReport& report) {
   if (!settled || report.status != StepStatus::rejected) return false;
   state = *settled;
   settled.reset();
-  const Surroundings around = look_around(state.x, false);
+  const auto stencils = restore_stencils(std::span<const double>(state.extra).first(at(system->memory())));
   report.reason +=
       "; the step began at a state that a budget had left unfinished, so the last one in balance, of t = " +
       number(state.t) + ", is back";
-  if (!around.error.empty()) report.reason += " (" + around.error + ")";
+  if (!stencils) report.reason += " (" + stencils.error() + ")";
   return true;
 }
 
