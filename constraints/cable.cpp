@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "constraints/segment_pool.h"
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -63,7 +64,7 @@ class CableEffect final : public EffectSource {
                    " points; give at least two, or one and a fixed end"};
     }
     if (!(def_.stiffness >= 0) || !std::isfinite(def_.stiffness)) {
-      return Error{who() + ": stiffness = " + std::to_string(def_.stiffness) +
+      return Error{who() + ": stiffness = " + number(def_.stiffness) +
                    " N/m; it must be positive, or 0 for an inextensible cable"};
     }
     if (def_.stiffness > 0 && def_.control == CableControl::tension) {
@@ -74,8 +75,7 @@ class CableEffect final : public EffectSource {
     for (const auto& p : def_.amount.points) {
       if (!std::isfinite(p[1])) return Error{who() + ": its amount has a value that is no number"};
       if (def_.control != CableControl::tension && p[1] <= 0) {
-        return Error{who() + ": length amount " + std::to_string(p[1]) +
-                     "; a cable's length must stay positive"};
+        return Error{who() + ": length amount " + number(p[1]) + "; a cable's length must stay positive"};
       }
     }
     return {};

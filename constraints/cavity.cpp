@@ -377,12 +377,11 @@ class CavityEffect final : public EffectSource {
       if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
         return Error{who() + "its amount has a value that is no number"};
       if (def_.control == CavityControl::gas && p[1] <= 0) {
-        return Error{who() + "gas amount " + std::to_string(p[1]) +
+        return Error{who() + "gas amount " + number(p[1]) +
                      "; some gas must stay in the chamber, give positive amounts"};
       }
       if (def_.control != CavityControl::pressure && p[1] <= 0) {
-        return Error{who() + "volume amount " + std::to_string(p[1]) +
-                     "; a chamber's volume must stay positive"};
+        return Error{who() + "volume amount " + number(p[1]) + "; a chamber's volume must stay positive"};
       }
     }
     if (def_.surfaces.empty())
@@ -434,16 +433,16 @@ class CavityEffect final : public EffectSource {
 
   Result<void> check_content() const {
     if (!(def_.polytropic >= 1) || !std::isfinite(def_.polytropic)) {
-      return Error{who() + "polytropic = " + std::to_string(def_.polytropic) +
+      return Error{who() + "polytropic = " + number(def_.polytropic) +
                    "; it is 1 for an isothermal gas and 1.4 for air without heat exchange"};
     }
     if (!(def_.ambient > 0) || !std::isfinite(def_.ambient)) {
-      return Error{who() + "ambient = " + std::to_string(def_.ambient) +
+      return Error{who() + "ambient = " + number(def_.ambient) +
                    " Pa; the absolute pressure outside must be positive, 101325 Pa at sea level"};
     }
     if (!(def_.density >= 0) || !std::isfinite(def_.density) ||
         !std::isfinite(dot(def_.gravity, def_.gravity))) {
-      return Error{who() + "density = " + std::to_string(def_.density) +
+      return Error{who() + "density = " + number(def_.density) +
                    " kg/m^3; density and gravity of the liquid must be finite, the density not negative"};
     }
     return {};
@@ -457,7 +456,7 @@ class CavityEffect final : public EffectSource {
       const Vec3& X = builder.rest()[at(n)];
       return Error{who() + "it has an opening of " + std::to_string(loop.size()) +
                    " nodes that nothing caps: node " + std::to_string(n - body.first_node + 1) + " at (" +
-                   std::to_string(X.x) + ", " + std::to_string(X.y) + ", " + std::to_string(X.z) +
+                   number(X.x) + ", " + number(X.y) + ", " + number(X.z) +
                    ") is free; close the surface, hold the rim with a dirichlet support added before the "
                    "cavity, or set "
                    "cap_free_openings for a membrane that seals it and pulls on its rim. For a load on faces "
@@ -501,7 +500,7 @@ class CavityEffect final : public EffectSource {
     const bool needs_chamber = def_.control != CavityControl::pressure || def_.density > 0;
     if (needs_chamber && rest_volume <= 0) {
       return Error{who() + "its surface encloses the body rather than a chamber (signed volume " +
-                   std::to_string(rest_volume) +
+                   number(rest_volume) +
                    " m^3); volume control needs a chamber, use pressure control outside"};
     }
     auto amount = std::make_shared<Amount>(def_.amount);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/text.h"
+
 namespace isochor {
 
 namespace {
@@ -189,13 +191,12 @@ class ValveEffect final : public EffectSource {
   void describe(Fingerprint& f) const override { f.add(def_); }
   Result<void> check() const override {
     if (!(def_.conductance > 0) || !std::isfinite(def_.conductance)) {
-      return Error{who() + "conductance = " + std::to_string(def_.conductance) +
+      return Error{who() + "conductance = " + number(def_.conductance) +
                    " m^3/(s Pa); it must be a positive number"};
     }
     for (const auto& p : def_.amount.points) {
       if (!(p[1] >= 0) || !std::isfinite(p[1])) {
-        return Error{who() + "opening " + std::to_string(p[1]) +
-                     "; it is 0 when shut and positive when open"};
+        return Error{who() + "opening " + number(p[1]) + "; it is 0 when shut and positive when open"};
       }
     }
     if (def_.from == def_.to)

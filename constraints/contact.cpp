@@ -12,16 +12,11 @@
 #include "constraints/rigid_body.h"
 #include "constraints/surface_nodes.h"
 #include "engine/builder.h"
+#include "engine/text.h"
 
 namespace isochor {
 
 namespace {
-
-std::string number(double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
 
 class ContactInstance final : public EffectInstance {
  public:

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "engine/builder.h"
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -167,7 +168,7 @@ class DampingEffect final : public EffectSource {
     for (const auto& [key, value, unit] :
          {std::tuple{"viscosity", def_.viscosity, "Pa s"}, {"mass_rate", def_.mass_rate, "1/s"}}) {
       if (value >= 0 && std::isfinite(value)) continue;
-      return Error{"damping \"" + def_.name + "\": " + key + " = " + std::to_string(value) + " " + unit +
+      return Error{"damping \"" + def_.name + "\": " + key + " = " + number(value) + " " + unit +
                    "; it must be zero (off) or positive, or motion would feed on it"};
     }
     if (def_.viscosity == 0 && def_.mass_rate == 0) {

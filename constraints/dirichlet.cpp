@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "constraints/point_pool.h"
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -162,7 +163,7 @@ class DirichletEffect final : public EffectSource {
     }
     const bool springs = def_.treatment == SupportTreatment::stiffness;
     if (springs != (def_.stiffness != 0) || !(def_.stiffness >= 0) || !std::isfinite(def_.stiffness)) {
-      return Error{who() + "stiffness = " + std::to_string(def_.stiffness) + " N/m with " +
+      return Error{who() + "stiffness = " + number(def_.stiffness) + " N/m with " +
                    (springs ? "treatment \"stiffness\"; give a positive number"
                             : "an exact treatment; leave it out, or take treatment \"stiffness\"")};
     }

@@ -3,15 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/text.h"
+
 namespace isochor {
 
 namespace {
-
-std::string number(double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
 
 Result<void> find_overlap(const Builder& builder, const SurfaceContactDef& def, const EdgeContactPool& pool,
                           ContactRows& rows) {

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "engine/mesh/cell_shape.h"
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -67,9 +68,8 @@ Vec3 EmbeddedPoint::at(std::span<const Vec3> x) const {
 namespace {
 
 Error not_in_body(const BodyData& body, const Vec3& point, const std::string& who) {
-  return Error{who + ": the point (" + std::to_string(point.x) + ", " + std::to_string(point.y) + ", " +
-               std::to_string(point.z) + ") is not in body \"" + body.name +
-               "\"; give points in or on the body, in meters"};
+  return Error{who + ": the point (" + number(point.x) + ", " + number(point.y) + ", " + number(point.z) +
+               ") is not in body \"" + body.name + "\"; give points in or on the body, in meters"};
 }
 
 // As embed(), of hexahedra. Cells whose corners are far away are not asked.

@@ -4,6 +4,7 @@
 
 #include "constraints/surface_strain.h"
 #include "engine/builder.h"
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -79,8 +80,7 @@ class EpidermisEffect final : public EffectSource {
       return Error{who() + "surfaces is empty; name the surfaces that carry the skin"};
     }
     if (!(def_.gamma >= 0) || !std::isfinite(def_.gamma)) {
-      return Error{who() + "gamma = " + std::to_string(def_.gamma) +
-                   "; it must be zero (no stiffening) or positive"};
+      return Error{who() + "gamma = " + number(def_.gamma) + "; it must be zero (no stiffening) or positive"};
     }
     const bool by_layer = def_.young != 0 || def_.poisson != 0 || def_.thickness != 0;
     if (by_layer == (def_.stiffness != 0)) {
@@ -91,17 +91,17 @@ class EpidermisEffect final : public EffectSource {
     }
     if (!by_layer) {
       if (def_.stiffness > 0) return {};
-      return Error{who() + "stiffness = " + std::to_string(def_.stiffness) +
+      return Error{who() + "stiffness = " + number(def_.stiffness) +
                    " N/m; it must be positive, infinity keeps the area of every face"};
     }
     if (!(def_.young > 0) || !std::isfinite(def_.young)) {
-      return Error{who() + "young = " + std::to_string(def_.young) + " Pa; it must be positive"};
+      return Error{who() + "young = " + number(def_.young) + " Pa; it must be positive"};
     }
     if (!(def_.thickness > 0) || !std::isfinite(def_.thickness)) {
-      return Error{who() + "thickness = " + std::to_string(def_.thickness) + " m; it must be positive"};
+      return Error{who() + "thickness = " + number(def_.thickness) + " m; it must be positive"};
     }
     if (!(def_.poisson > 0) || !(def_.poisson <= 0.5)) {
-      return Error{who() + "poisson = " + std::to_string(def_.poisson) +
+      return Error{who() + "poisson = " + number(def_.poisson) +
                    "; it must lie above 0 (no resistance to area) and at most at 0.5 (area of every face "
                    "kept)"};
     }

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "constraints/mesh_solid.h"
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -12,12 +13,6 @@ namespace {
 
 double norm(const Vec3& v) {
   return std::sqrt(dot(v, v));
-}
-
-std::string number(double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
 }
 
 // Weights of four neighboring coefficients at t in [0, 1] of an interval, with their derivatives.

@@ -4,6 +4,7 @@
 
 #include "constraints/surface_strain.h"
 #include "engine/builder.h"
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -67,13 +68,13 @@ class MembraneEffect final : public EffectSource {
       return Error{who() + "surfaces is empty; name the surfaces that carry the membrane"};
     }
     if (!(def_.young > 0) || !std::isfinite(def_.young)) {
-      return Error{who() + "young = " + std::to_string(def_.young) + " Pa; it must be positive"};
+      return Error{who() + "young = " + number(def_.young) + " Pa; it must be positive"};
     }
     if (!(def_.thickness > 0) || !std::isfinite(def_.thickness)) {
-      return Error{who() + "thickness = " + std::to_string(def_.thickness) + " m; it must be positive"};
+      return Error{who() + "thickness = " + number(def_.thickness) + " m; it must be positive"};
     }
     if (!(def_.poisson >= 0) || !(def_.poisson <= 0.5)) {
-      return Error{who() + "poisson = " + std::to_string(def_.poisson) +
+      return Error{who() + "poisson = " + number(def_.poisson) +
                    "; it must lie between 0 and 0.5, 0.5 is an incompressible membrane"};
     }
     return {};

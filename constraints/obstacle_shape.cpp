@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/text.h"
+
 namespace isochor {
 
 namespace {
@@ -93,10 +95,6 @@ Distance to_box(const Obstacle& s, const Vec3& y) {
     d[k][k] = sign(y[k]);
   }
   return beyond(q, d, 3, s.rounding);
-}
-
-std::string number(double v) {
-  return std::to_string(v);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "engine/base.h"
 #include "engine/mesh/cell_shape.h"
+#include "engine/text.h"
 #include "isochor/painted.h"
 
 namespace isochor {
@@ -108,7 +109,7 @@ Result<PaintedCells> painted_cells(const Mesh& mesh, std::span<const std::string
                                    double threshold) {
   if (fields.empty()) return Error{"no field is named; name at least one"};
   if (!(threshold >= 0 && threshold < 1)) {
-    return Error{"threshold = " + std::to_string(threshold) + "; it must be at least 0 and below 1"};
+    return Error{"threshold = " + number(threshold) + "; it must be at least 0 and below 1"};
   }
   auto feet = surface_feet(mesh, surfaces);
   if (!feet) return Error{feet.error()};

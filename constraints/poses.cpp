@@ -5,6 +5,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "engine/text.h"
+
 namespace isochor {
 
 namespace {
@@ -93,12 +95,12 @@ Result<void> check_poses(const PoseTrack& track) {
       return Error{where + "a number is not finite; give time, position and quaternion as plain numbers"};
     }
     if (std::abs(size - 1) > 1e-3) {
-      return Error{where + "its quaternion has length " + std::to_string(size) +
+      return Error{where + "its quaternion has length " + number(size) +
                    "; a rotation has length 1, in the order w, x, y, z"};
     }
     if (i > 0 && !(p.t > track.keys[i - 1].t)) {
-      return Error{where + "time " + std::to_string(p.t) + " does not come after " +
-                   std::to_string(track.keys[i - 1].t) + "; list keyframes by ascending time"};
+      return Error{where + "time " + number(p.t) + " does not come after " + number(track.keys[i - 1].t) +
+                   "; list keyframes by ascending time"};
     }
   }
   return {};

@@ -8,6 +8,7 @@
 #include "constraints/closed_surface.h"
 #include "constraints/moved_solid.h"
 #include "constraints/segment_pool.h"
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -121,11 +122,11 @@ class RigidBodyEffect final : public EffectSource {
       return Error{who() + "a free body moves by forces; leave its motion out, or make it an obstacle"};
     }
     if (is_solid(def_.shape) && def_.shape.rounding > 0) {
-      return Error{who() + "rounding = " + std::to_string(def_.shape.rounding) +
+      return Error{who() + "rounding = " + number(def_.shape.rounding) +
                    " m would add a mass that its surface does not show; leave it at 0"};
     }
     if (!(def_.density > 0) || !std::isfinite(def_.density)) {
-      return Error{who() + "density = " + std::to_string(def_.density) + " kg/m^3; it must be positive"};
+      return Error{who() + "density = " + number(def_.density) + " kg/m^3; it must be positive"};
     }
     return {};
   }

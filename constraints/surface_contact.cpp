@@ -10,17 +10,12 @@
 #include "constraints/surface_contact_pool.h"
 #include "constraints/surface_nodes.h"
 #include "engine/builder.h"
+#include "engine/text.h"
 #include "isochor/contact.h"
 
 namespace isochor {
 
 namespace {
-
-std::string number(double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
 
 // The layer that stands for a hard contact: its thickness over the size of a face, and the pressure up to
 // which it is linear over the shear modulus of the softer body. In the folds of one body, whose flanks meet

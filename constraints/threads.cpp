@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "constraints/segment_pool.h"
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -79,14 +80,14 @@ std::unique_ptr<EffectInstance> add_threads(Builder& builder, const BodyData& bo
 
 Result<void> check_thread(const std::string& who, double stiffness, double slack, bool may_be_hard) {
   if (!(stiffness >= 0) || !std::isfinite(stiffness) || (stiffness == 0 && !may_be_hard)) {
-    return Error{who + ": stiffness = " + std::to_string(stiffness) +
+    return Error{who + ": stiffness = " + number(stiffness) +
                  (may_be_hard
                       ? " N; it must be positive, or 0 for inextensible threads"
                       : " N/m; it must be positive: edges of a triangle mesh that cannot stretch at all "
                         "leave a surface no way to move")};
   }
   if (!(slack >= 0) || !std::isfinite(slack)) {
-    return Error{who + ": slack = " + std::to_string(slack) + "; it must be zero or a positive strain"};
+    return Error{who + ": slack = " + number(slack) + "; it must be zero or a positive strain"};
   }
   return {};
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "constraints/point_pool.h"
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -44,7 +45,7 @@ class TieEffect final : public EffectSource {
 
   Result<void> check() const override {
     if (!(def_.stiffness >= 0) || !std::isfinite(def_.stiffness)) {
-      return Error{who() + ": stiffness = " + std::to_string(def_.stiffness) +
+      return Error{who() + ": stiffness = " + number(def_.stiffness) +
                    " N/m; it must be positive, or 0 for a hard tie"};
     }
     return {};

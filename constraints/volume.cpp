@@ -3,6 +3,7 @@
 #include <map>
 
 #include "constraints/volume_zones.h"
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -39,7 +40,7 @@ class VolumeEffect final : public EffectSource {
 
   Result<void> check() const override {
     if (!std::isfinite(def_.stabilization) || def_.stabilization < 0) {
-      return Error{who() + "stabilization = " + std::to_string(def_.stabilization) +
+      return Error{who() + "stabilization = " + number(def_.stabilization) +
                    "; it must be zero (off) or positive, 1 is the default"};
     }
     if (def_.rings < 1 || def_.rings > 1000) {
@@ -52,7 +53,7 @@ class VolumeEffect final : public EffectSource {
     }
     for (const VolumeZone& z : def_.zones) {
       if (!(z.compliance >= 0)) {
-        return Error{who() + "zone \"" + z.name + "\": compliance = " + std::to_string(z.compliance) +
+        return Error{who() + "zone \"" + z.name + "\": compliance = " + number(z.compliance) +
                      "; it must be 0 (hard), 1 (as the material says), any positive factor or infinity (no "
                      "row)"};
       }

@@ -9,6 +9,7 @@
 #include "engine/mesh/available_memory.h"
 #include "engine/scene_checks.h"
 #include "engine/supports.h"
+#include "engine/text.h"
 #include "isochor/generate.h"
 #include "isochor/mesh_io.h"
 
@@ -101,7 +102,7 @@ Result<void> Builder::add_regions(const BodyDef& def, BodyData& body) const {
     if (!m.material)
       return Error{"body \"" + def.name + "\": a material is empty; make one with neo_hookean() or another"};
     if (!std::isfinite(m.density) || m.density <= 0) {
-      return Error{"body \"" + def.name + "\": density = " + std::to_string(m.density) +
+      return Error{"body \"" + def.name + "\": density = " + number(m.density) +
                    " kg/m^3; it must be a positive number"};
     }
   }

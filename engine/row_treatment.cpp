@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/text.h"
+
 namespace isochor {
 
 static bool bounded(const RowPool& pool) {
@@ -175,8 +177,7 @@ Result<void> RowTreatments::check_condensed(const RowPool& pool, const std::stri
   }
   for (Index r = 0; r < pool.rows(); ++r) {
     if (diagonal[at(r)] > 0) continue;
-    return Error{who + "row " + std::to_string(r) + " is hard (compliance " +
-                 std::to_string(diagonal[at(r)]) +
+    return Error{who + "row " + std::to_string(r) + " is hard (compliance " + number(diagonal[at(r)]) +
                  "), so there is nothing to condense it with: K + G^T G / C needs C > 0; use treatment "
                  "saddle, or nu < "
                  "0.5"};

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/material_model.h"
+#include "engine/text.h"
 #include "isochor/materials.h"
 #include "materials/energy_batch.h"
 
@@ -105,11 +106,11 @@ class PenalizedModel final : public MaterialModel {
 Result<MaterialPtr> with_compression_penalty(MaterialPtr base, const CompressionPenalty& penalty) {
   if (!base) return Error{"compression penalty: the material is empty"};
   if (!(penalty.modulus > 0) || !std::isfinite(penalty.modulus)) {
-    return Error{"compression penalty: modulus = " + std::to_string(penalty.modulus) +
+    return Error{"compression penalty: modulus = " + number(penalty.modulus) +
                  " Pa; it must be positive (some 25 times the shear modulus is usual)"};
   }
   if (!(penalty.beta >= 0) || !std::isfinite(penalty.beta)) {
-    return Error{"compression penalty: beta = " + std::to_string(penalty.beta) +
+    return Error{"compression penalty: beta = " + number(penalty.beta) +
                  "; it must be zero (quadratic) or positive (9 is usual)"};
   }
   return MaterialPtr(

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/material_model.h"
+#include "engine/text.h"
 #include "isochor/materials.h"
 
 namespace isochor {
@@ -187,13 +188,13 @@ Result<void> check_direction(const std::string& who, const Vec3& a) {
 
 Result<void> check(const std::string& who, const FiberFamily& f) {
   if (!(f.k1 > 0) || !std::isfinite(f.k1)) {
-    return Error{who + "k1 = " + std::to_string(f.k1) + " Pa; the stiffness of fibers must be positive"};
+    return Error{who + "k1 = " + number(f.k1) + " Pa; the stiffness of fibers must be positive"};
   }
   if (!(f.k2 >= 0) || !std::isfinite(f.k2)) {
-    return Error{who + "k2 = " + std::to_string(f.k2) + "; it must be zero (no stiffening) or positive"};
+    return Error{who + "k2 = " + number(f.k2) + "; it must be zero (no stiffening) or positive"};
   }
   if (!(f.dispersion >= 0) || !(f.dispersion <= 1.0 / 3)) {
-    return Error{who + "dispersion = " + std::to_string(f.dispersion) +
+    return Error{who + "dispersion = " + number(f.dispersion) +
                  "; it must lie between 0 (all fibers parallel) and 1/3 (no direction at all)"};
   }
   if (f.directions.empty()) return check_direction(who + "direction", f.direction);

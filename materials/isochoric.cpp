@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/text.h"
 #include "materials/energy_batch.h"
 #include "materials/energy_model.h"
 
@@ -63,7 +64,7 @@ Result<MaterialPtr> isochoric_neo_hookean(const ElasticConstants& constants) {
 
 Result<MaterialPtr> isochoric_extended(const ElasticConstants& constants, double threshold) {
   if (!(threshold > 0) || !(threshold < 1)) {
-    return Error{"isochoric_extended: threshold = " + std::to_string(threshold) +
+    return Error{"isochoric_extended: threshold = " + number(threshold) +
                  "; the volume ratio below which the energy is continued must lie between 0 and 1, both "
                  "excluded (0.1 is usual)"};
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/text.h"
 #include "materials/native_constants.h"
 #include "materials/stretch_batch.h"
 
@@ -71,8 +72,8 @@ Result<MaterialPtr> ogden(const OgdenConstants& c) {
   for (std::size_t p = 0; p < c.terms.size(); ++p) {
     const double product = c.terms[p].mu * c.terms[p].alpha;
     if (!(product > 0) || !std::isfinite(product)) {
-      return Error{"ogden: term " + std::to_string(p + 1) + " has mu = " + std::to_string(c.terms[p].mu) +
-                   " Pa and alpha = " + std::to_string(c.terms[p].alpha) +
+      return Error{"ogden: term " + std::to_string(p + 1) + " has mu = " + number(c.terms[p].mu) +
+                   " Pa and alpha = " + number(c.terms[p].alpha) +
                    "; their product must be positive, or the stress would fall with the stretch"};
     }
     twice_mu += product;

@@ -11,6 +11,7 @@
 #include <map>
 
 #include "engine/material_model.h"
+#include "engine/text.h"
 #include "isochor/materials.h"
 
 namespace isochor {
@@ -187,7 +188,7 @@ Result<MaterialPtr> with_poisson_field(const std::function<Result<MaterialPtr>(d
                    "fields and the others on top"};
     }
     if (std::isinf(material.value()->inverse_bulk())) {
-      return Error{who + "nu = " + std::to_string(poisson[c]) +
+      return Error{who + "nu = " + number(poisson[c]) +
                    " leaves this law no volume part (kappa = 0); take a slightly larger ratio"};
     }
     it->second = std::move(material).value();

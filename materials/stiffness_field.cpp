@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/material_model.h"
+#include "engine/text.h"
 #include "isochor/materials.h"
 
 namespace isochor {
@@ -100,7 +101,7 @@ Result<MaterialPtr> with_stiffness_field(MaterialPtr base, std::vector<double> f
     return Error{"stiffness field: it has no entry; give one factor a cell of the body's mesh"};
   for (std::size_t c = 0; c < factor.size(); ++c) {
     if (factor[c] > 0 && std::isfinite(factor[c])) continue;
-    return Error{"stiffness field: factor[" + std::to_string(c) + "] = " + std::to_string(factor[c]) +
+    return Error{"stiffness field: factor[" + std::to_string(c) + "] = " + number(factor[c]) +
                  "; every cell needs a positive number (a cell without stiffness would not hold together)"};
   }
   if (base->field_cells() > 0 && base->field_cells() != factor.size()) {

@@ -2,6 +2,7 @@
 // request the resistance k/12 ((1 - J)/6)^3 against compression.
 #include <cmath>
 
+#include "engine/text.h"
 #include "materials/energy_model.h"
 #include "materials/stretch_batch.h"
 
@@ -56,7 +57,7 @@ Result<MaterialPtr> stvk(const ElasticConstants& constants) {
 
 Result<MaterialPtr> stvk_resistant(const ElasticConstants& constants, double resistance) {
   if (!(resistance > 0) || !std::isfinite(resistance)) {
-    return Error{"stvk_resistant: resistance = " + std::to_string(resistance) +
+    return Error{"stvk_resistant: resistance = " + number(resistance) +
                  " Pa; it must be a positive number of pascals (without resistance: stvk)"};
   }
   return make("stvk_resistant", constants, resistance);

@@ -1,5 +1,6 @@
 #include "scenes/obstacle_files.h"
 
+#include "engine/text.h"
 #include "scenes/body_parts.h"
 
 namespace isochor {
@@ -33,8 +34,7 @@ Result<void> SolidFiles::load(Obstacle& o) {
   }
   if (!solid || o.file.empty() || o.solid) return {};
   if (!(o.spacing >= 0)) {
-    return Error{"spacing = " + std::to_string(o.spacing) +
-                 " m; it must be positive, or 0 for a file of distances"};
+    return Error{"spacing = " + number(o.spacing) + " m; it must be positive, or 0 for a file of distances"};
   }
   SolidPtr& known = read_[{o.shape, o.file, o.scale, o.spacing}];
   if (!known) {

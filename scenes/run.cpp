@@ -109,9 +109,8 @@ void Run::locate_probes() {
     probes_.push_back(locate(built_.world.mesh(id), p.point));
     if (probes_.back().distance == 0) continue;
     const Vec3 X = built_.world.rest_positions(id)[static_cast<std::size_t>(probes_.back().nodes[0])];
-    warn("probe \"" + p.name + "\" lies in no cell; it follows the nearest node, at (" + std::to_string(X.x) +
-         ", " + std::to_string(X.y) + ", " + std::to_string(X.z) + "), " +
-         std::to_string(probes_.back().distance) + " m away");
+    warn("probe \"" + p.name + "\" lies in no cell; it follows the nearest node, at (" + number(X.x) + ", " +
+         number(X.y) + ", " + number(X.z) + "), " + number(probes_.back().distance) + " m away");
   }
 }
 

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "engine/elements/reference_element.h"
+#include "engine/text.h"
 
 namespace isochor::studies {
 
@@ -17,12 +18,6 @@ bool all_finite(std::span<const Vec3> values) {
   return std::all_of(values.begin(), values.end(), [](const Vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
   });
-}
-
-std::string number(double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
 }
 
 const ReferenceElement& reference_of(CellType type) {

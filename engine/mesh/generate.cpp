@@ -5,6 +5,7 @@
 #include "engine/base.h"
 #include "engine/mesh/available_memory.h"
 #include "engine/mesh/cell_shape.h"
+#include "engine/text.h"
 
 namespace isochor {
 
@@ -54,8 +55,7 @@ Result<Mesh> box_mesh(const BoxMeshDef& def) {
     }
     if (!(def.upper[i] > def.lower[i])) {
       return Error{"box mesh: upper corner must exceed the lower one in every direction, axis " +
-                   std::to_string(i) + " runs from " + std::to_string(def.lower[i]) + " to " +
-                   std::to_string(def.upper[i])};
+                   std::to_string(i) + " runs from " + number(def.lower[i]) + " to " + number(def.upper[i])};
     }
   }
   const Index nx = def.divisions[0], ny = def.divisions[1], nz = def.divisions[2];

@@ -5,18 +5,13 @@
 #include <map>
 #include <set>
 
+#include "engine/text.h"
 #include "scenes/body_parts.h"
 #include "studies/chaos/distances.h"
 
 namespace isochor::studies {
 
 namespace {
-
-std::string number(double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
 
 double length(const Vec3& v) {
   return std::sqrt(dot(v, v));

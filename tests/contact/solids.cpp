@@ -253,5 +253,5 @@ TEST_CASE("an obstacle without its solid is refused") {
   }
   Obstacle o = test::mesh_obstacle(test::box_surface({1, 1, 1}));
   o.rounding = -1;
-  CHECK(check_obstacle(o).error() == "the obstacle's rounding = -1.000000 m; it must be zero or positive");
+  CHECK(check_obstacle(o).error() == "the obstacle's rounding = -1 m; it must be zero or positive");
 }

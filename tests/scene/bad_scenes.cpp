@@ -39,6 +39,27 @@ TEST_CASE("syntax is reported with file and line") {
   CHECK_THAT(error_of("{\"gravity\": [0, NaN, 0]}"), Contains("line 1"));
 }
 
+TEST_CASE("numbers of any size are told in a few digits") {
+  int refused = 0;
+  for (const char* value : {"-1e300", "1e300", "-1e-300", "1.7976931348623157e308"}) {
+    for (const char* key : {"bodies.block.materials[0].young", "bodies.block.materials[0].poisson",
+                            "bodies.block.materials[0].density", "bodies.block.mesh.box.upper[0]",
+                            "bodies.block.guard_stiffness", "bodies.block.guard_threshold",
+                            "analysis.row_tolerance", "analysis.force_tolerance", "analysis.duration",
+                            "volumes[0].stabilization", "dirichlet[0].stiffness", "damping[0].viscosity",
+                            "membranes[0].thickness", "contacts[0].friction", "contacts[0].obstacle.radius",
+                            "epidermis[0].stiffness", "cables[0].stiffness", "probes[0].point[0]"}) {
+      const std::string message = build_error_with(std::string(key) + "=" + value);
+      refused += message == "(none)" ? 0 : 1;
+      INFO(key << " = " << value << ": " << message);
+      int run = 0, longest = 0;
+      for (const char c : message) longest = std::max(longest, run = c >= '0' && c <= '9' ? run + 1 : 0);
+      CHECK(longest < 20);
+    }
+  }
+  CHECK(refused > 20);
+}
+
 TEST_CASE("unknown keys are errors with the nearest known one") {
   CHECK_THAT(error_with("tractions[0].tracton=[1,0,0]"),
              Contains("tractions[0].tracton: unknown key") && Contains("did you mean \"traction\"?"));
