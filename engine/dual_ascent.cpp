@@ -67,6 +67,7 @@ bool DualAscent::minimize(const SaddleProblem& p, const SaddleOptions& options, 
   double before = 0;
   bool whole = true;  // the last step
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    if (options.budget > 0 && report.iterations + report.corrections >= options.budget) break;
     if (report.factorizations >= options.max_factorizations ||
         (!whole && iteration >= options.patient_iterations))
       break;
@@ -294,7 +295,8 @@ SaddleReport DualAscent::solve(const SaddleProblem& p, const SaddleOptions& opti
       too_slow = left >= farther || std::log(left) / std::log(farther / left) * window > most - k;
       farther = left;
     }
-    if (k >= most || too_slow) {
+    const bool spent = options.budget > 0 && report.iterations + report.corrections >= options.budget;
+    if (k >= most || too_slow || spent) {
       report.status = SaddleStatus::iteration_limit;
       if (too_slow) report.message = "the multipliers converge too slowly";
       return report;

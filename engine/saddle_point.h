@@ -10,6 +10,8 @@ namespace isochor {
 
 struct SaddleOptions {
   int max_iterations = 60;
+  // Of a budget: no more, whatever else a method counts its iterations by. 0: none.
+  int budget = 0;
   int max_factorizations = 1000;  // mending an inertia takes more than one an iteration
   // From so many on, a solve goes on only while it gets somewhere.
   int patient_iterations = 1000, patient_factorizations = 1000;

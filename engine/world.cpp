@@ -267,6 +267,7 @@ SaddleProblem World::Impl::problem_at(double t) {
 SaddleOptions World::Impl::saddle_options(const Allowance& allowance) const {
   SaddleOptions saddle;
   saddle.max_iterations = allowance.iterations;
+  if (allowance.keep_unfinished) saddle.budget = allowance.iterations;
   saddle.max_factorizations = allowance.factorizations;
   saddle.patient_iterations =
       allowance.patient_iterations > 0 ? allowance.patient_iterations : allowance.iterations;

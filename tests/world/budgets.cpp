@@ -69,6 +69,25 @@ TEST_CASE("steps within a budget of iterations leave a world that whole steps go
   }
 }
 
+TEST_CASE("a budget bounds every method") {
+  for (const Method method : {Method::automatic, Method::condensation, Method::dual_gradients,
+                              Method::augmented_gradients, Method::augmented_ascent, Method::dual_ascent}) {
+    WorldOptions options = falling();
+    options.method = method;
+    Finger finger(options, false);
+    test::value(finger.world.set_amount(finger.chamber, 2000));
+    for (int k = 0; k < 3; ++k) {
+      StepBudget limit;
+      limit.iterations = 4;
+      const StepReport r = finger.world.step(1.0 / 60, limit);
+      INFO(static_cast<int>(method) << ", step " << k << ": " << r.reason);
+      CHECK(r.iterations <= 4);
+      CHECK(r.dual_steps <= 8);
+      CHECK((r.status != StepStatus::invalid && r.status != StepStatus::cancelled));
+    }
+  }
+}
+
 TEST_CASE("a request to stop is heard inside of every loop, and the world is as it was") {
   for (const Method method : {Method::automatic, Method::dual_gradients, Method::augmented_gradients,
                               Method::augmented_ascent, Method::dual_ascent}) {
