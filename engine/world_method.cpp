@@ -185,8 +185,8 @@ Result<void> World::Impl::make_method(SystemParts parts, bool keep_solvers) {
     newton.reset();
   } else {
     solver = make_linear_solver(kind, wishes);
-    if (system->couples()) unsymmetric = make_unsymmetric_solver(kind);
   }
+  if (system->couples() && !unsymmetric) unsymmetric = make_unsymmetric_solver(kind);
   if (!solver) return Error{"world: this build does not have the linear solver that is asked for"};
   if (ascent) {
     DualAscentOptions ascent_options;
@@ -197,8 +197,8 @@ Result<void> World::Impl::make_method(SystemParts parts, bool keep_solvers) {
   } else if (follows) {
     newton = std::make_unique<PathFollower>(system, *parallel, std::move(solver));
   } else if (system->couples()) {
-    newton = std::make_unique<UnsymmetricNewton>(system, *parallel, std::move(solver),
-                                                 make_unsymmetric_solver(kind));
+    newton =
+        std::make_unique<UnsymmetricNewton>(system, *parallel, std::move(solver), std::move(unsymmetric));
   } else {
     newton = std::make_unique<Newton>(system, *parallel, std::move(solver));
   }
