@@ -121,7 +121,7 @@ bool World::Impl::admissible(double h, const SaddleProblem& problem, SaddleRepor
     return true;
   }
   const bool sweeps = options.method == Method::position_based;
-  const double most = sweeps ? largest_row_of_sweeps : largest_row_at_end;
+  const double most = !sweeps ? largest_row_at_end : part == 1 ? largest_row_of_sweeps : 0.1;
   if ((part != 1 || sweeps) && !(stored.row <= most)) {
     return refuse("rows are off by " + number(stored.row) + " of their measure at the end of the step" +
                   (sweeps ? ": take more sweeps, shorter steps or another method"
