@@ -16,20 +16,38 @@ namespace {
 
 constexpr std::uint64_t kMagic = 0x6574617473736f69ull;       // "iosstate"
 constexpr std::uint64_t kFirstMagic = 0x31726f68636f7369ull;  // of version 1, without a checksum
-constexpr std::uint64_t kVersion = 2;
+constexpr std::uint64_t kVersion = 3;
 
 struct Header {
   std::uint64_t magic = kMagic, version = kVersion, bytes = 0;
 };
 
 // What follows the header.
-struct Content {
-  std::vector<ScenePart> scene;
+struct Moment {
   double t = 0;
   std::vector<Vec3> x, v;
-  std::vector<double> lambda, extra, amounts;
-  std::vector<Vec3> reactions;
+  std::vector<double> lambda, extra;
 };
+struct Content {
+  std::vector<ScenePart> scene;
+  Moment now;
+  std::vector<double> amounts;
+  std::vector<Vec3> reactions;
+  std::vector<Moment> settled;  // none, or the state in balance behind an unfinished one
+};
+
+Moment moment_of(const State& s) {
+  return {s.t, s.x, s.v, s.lambda, s.extra};
+}
+State state_of(Moment&& m) {
+  State s;
+  s.t = m.t;
+  s.x = std::move(m.x);
+  s.v = std::move(m.v);
+  s.lambda = std::move(m.lambda);
+  s.extra = std::move(m.extra);
+  return s;
+}
 
 // What a scene's options mean; how its equations are solved, and how well, may differ.
 void describe_options(const WorldOptions& o, std::vector<ScenePart>& parts) {
@@ -182,13 +200,31 @@ Result<void> World::Impl::restore_stencils(std::span<const double> memory) {
 std::vector<std::byte> World::save() const {
   Impl& w = *impl_;
   if (!w.compile()) return {};
-  Content content{w.scene_parts(), w.state.t,     w.state.x, w.state.v,
-                  w.state.lambda,  w.state.extra, {},        w.reactions};
+  Content content{w.scene_parts(), moment_of(w.state), {}, w.reactions, {}};
+  if (w.settled) content.settled.push_back(moment_of(*w.settled));
   w.save_amounts(content.amounts);
   ByteWriter out;
   out.put(Header{});
   out.put(content);
   return std::move(out).sealed(offsetof(Header, bytes));
+}
+
+// Whether numbers can be a state of this world.
+template <class M>
+Result<void> World::Impl::check_moment(const M& m) const {
+  if (m.x.size() != state.x.size() || m.v.size() != m.x.size() || m.lambda.size() != state.lambda.size() ||
+      m.extra.size() != state.extra.size())
+    return damaged("its sizes do not fit this scene");
+  if (!std::isfinite(m.t) || !finite(m.x) || !finite(m.v) || !finite(m.lambda) || !finite(m.extra))
+    return damaged("it holds numbers that are not finite");
+  // Beyond this, searches for what is close have no numbers left to count their boxes with.
+  constexpr double farthest = 1e12;
+  const double limit = farthest * std::max(system->length(), 1e-300);
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    if (std::max({std::abs(m.x[i].x), std::abs(m.x[i].y), std::abs(m.x[i].z)}) <= limit) continue;
+    return damaged("node " + std::to_string(i) + " is more than " + number(limit) + " m away");
+  }
+  return {};
 }
 
 Result<void> World::load(std::span<const std::byte> bytes) {
@@ -201,30 +237,20 @@ Result<void> World::load(std::span<const std::byte> bytes) {
     return Error{"load: the state was saved from another scene: of this world differ " + what +
                  "; load it into a world built the same way"};
   }
-  if (c.x.size() != w.state.x.size() || c.v.size() != c.x.size() ||
-      c.lambda.size() != w.state.lambda.size() || c.extra.size() != w.state.extra.size() ||
-      c.reactions.size() != w.reactions.size())
+  if (c.reactions.size() != w.reactions.size() || c.settled.size() > 1)
     return damaged("its sizes do not fit this scene");
-  if (!std::isfinite(c.t) || !finite(c.x) || !finite(c.v) || !finite(c.lambda) || !finite(c.extra) ||
-      !finite(c.reactions) || !finite(c.amounts))
-    return damaged("it holds numbers that are not finite");
-  // Beyond this, searches for what is close have no numbers left to count their boxes with.
-  constexpr double farthest = 1e12;
-  const double limit = farthest * std::max(w.system->length(), 1e-300);
-  for (std::size_t i = 0; i < c.x.size(); ++i) {
-    if (std::max({std::abs(c.x[i].x), std::abs(c.x[i].y), std::abs(c.x[i].z)}) <= limit) continue;
-    return damaged("node " + std::to_string(i) + " is more than " + number(limit) + " m away");
+  if (!finite(c.reactions) || !finite(c.amounts)) return damaged("it holds numbers that are not finite");
+  if (auto r = w.check_moment(c.now); !r) return r;
+  if (!c.settled.empty()) {
+    if (auto r = w.check_moment(c.settled.front()); !r) return r;
   }
   if (!w.amounts_fit(c.amounts)) return damaged("its amounts are none of these effects");
-  if (auto r = w.restore_stencils(std::span<const double>(c.extra).first(at(w.system->memory()))); !r)
+  if (auto r = w.restore_stencils(std::span<const double>(c.now.extra).first(at(w.system->memory()))); !r)
     return r;
   w.load_amounts(c.amounts);
-  w.state.t = c.t;
-  w.state.x.swap(c.x);
-  w.state.v.swap(c.v);
-  w.state.lambda.swap(c.lambda);
-  w.state.extra.swap(c.extra);
+  w.state = state_of(std::move(c.now));
   w.settled.reset();
+  if (!c.settled.empty()) w.settled = state_of(std::move(c.settled.front()));
   w.reactions.swap(c.reactions);
   return {};
 }

@@ -97,6 +97,8 @@ struct World::Impl {
   std::vector<ScenePart> described;  // made when first asked for
   const std::vector<ScenePart>& scene_parts();
   std::vector<std::shared_ptr<const StencilPool>> first_stencils;  // of a scene whose stencils follow
+  template <class M>
+  Result<void> check_moment(const M& moment) const;  // of a saved state
   Result<void> restore_stencils(std::span<const double> memory);
   void begin_amounts(double t0, double t1);
   void evaluate_data(double t);

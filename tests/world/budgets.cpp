@@ -69,6 +69,24 @@ TEST_CASE("steps within a budget of iterations leave a world that whole steps go
   }
 }
 
+TEST_CASE("a state that a budget left unfinished is saved with the way back") {
+  StepBudget limit;
+  limit.iterations = 1;
+  Finger one(falling(), false), other(falling(), false);
+  test::value(one.world.set_amount(one.chamber, 500));
+  REQUIRE(one.world.step(1.0 / 60, limit).status == StepStatus::unfinished);
+  test::value(other.world.load(one.world.save()));
+  // More than anything can carry: both give the unfinished state back.
+  for (Finger* f : {&one, &other}) {
+    test::value(f->world.set_amount(f->chamber, 1e12));
+    const StepReport r = f->world.step(1.0 / 60);
+    CHECK(r.status == StepStatus::rejected);
+    CHECK(r.reason.find("is back") != std::string::npos);
+    CHECK(f->world.time() == 0);
+  }
+  CHECK(one.world.state_hash() == other.world.state_hash());
+}
+
 TEST_CASE("a budget bounds every method") {
   for (const Method method : {Method::automatic, Method::condensation, Method::dual_gradients,
                               Method::augmented_gradients, Method::augmented_ascent, Method::dual_ascent}) {
