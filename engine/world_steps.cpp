@@ -121,6 +121,12 @@ void World::Impl::finish_report(StepReport& report, const StageSeconds& before, 
                     now.line_search - before.line_search,
                     total};
   report.expected_negative_pivots = system->rows();
+  // What was rejected says how the state is that stays.
+  if (report.status != StepStatus::converged && report.status != StepStatus::unfinished) {
+    const Admission::Verdict now_is = admission->look(state.x, state.x);
+    report.min_J = now_is.min_J;
+    report.inverted_cells = now_is.inverted;
+  }
   report.time = state.t;
 }
 
