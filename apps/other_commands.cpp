@@ -4,7 +4,7 @@
 
 #include "apps/commands.h"
 #include "apps/table.h"
-#include "engine/linear_solver.h"
+#include "engine/solvers/linear_solver.h"
 #include "isochor/mesh_io.h"
 #include "scenes/library.h"
 #include "scenes/run.h"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "engine/material_model.h"
+#include "engine/elements/material_model.h"
 #include "isochor/materials.h"
 
 namespace isochor::response {

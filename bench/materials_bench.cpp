@@ -16,9 +16,9 @@
 #include <random>
 #include <vector>
 
+#include "engine/elements/material_model.h"
 #include "engine/elements/reference_element.h"
 #include "engine/elements/solid_pool.h"
-#include "engine/material_model.h"
 #include "isochor/generate.h"
 #include "isochor/materials.h"
 #include "options.h"

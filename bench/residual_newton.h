@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "engine/builder.h"
-#include "engine/kkt.h"
-#include "engine/linear_solver.h"
-#include "engine/material_model.h"
-#include "engine/recovery.h"
+#include "engine/elements/material_model.h"
+#include "engine/scene/builder.h"
+#include "engine/solve/kkt/kkt.h"
+#include "engine/solvers/linear_solver.h"
+#include "engine/world/recovery.h"
 
 namespace residual_newton {
 

@@ -20,12 +20,12 @@
 #include <string>
 #include <vector>
 
-#include "engine/base.h"
-#include "engine/linear_solver.h"
-#include "engine/solvers/cholmod_solver.h"
-#include "engine/solvers/eigen_solver.h"
-#include "engine/solvers/multifrontal_solver.h"
-#include "engine/solvers/mumps_solver.h"
+#include "engine/base/base.h"
+#include "engine/solvers/foreign/cholmod_solver.h"
+#include "engine/solvers/foreign/eigen_solver.h"
+#include "engine/solvers/foreign/mumps_solver.h"
+#include "engine/solvers/front/multifrontal_solver.h"
+#include "engine/solvers/linear_solver.h"
 #include "engine/solvers/ordering.h"
 
 namespace {

@@ -42,11 +42,15 @@ function(isochor_sources out)
   set(${out} ${found} PARENT_SCOPE)
 endfunction()
 
-isochor_sources(_mesh engine/mesh)
-isochor_module(mesh ${_mesh})
-target_link_libraries(isochor_mesh PRIVATE pugixml::pugixml ZLIB::ZLIB)
+isochor_sources(_base engine/base)
+isochor_module(base ${_base})
+target_link_libraries(isochor_base PRIVATE TBB::tbb)
 
-isochor_sources(_solvers engine/solvers)
+isochor_sources(_mesh engine/mesh engine/mesh/read engine/mesh/check engine/mesh/write engine/mesh/make)
+isochor_module(mesh ${_mesh})
+target_link_libraries(isochor_mesh PUBLIC isochor_base PRIVATE pugixml::pugixml ZLIB::ZLIB)
+
+isochor_sources(_solvers engine/solvers engine/solvers/front engine/solvers/iterative engine/solvers/foreign)
 isochor_module(solvers ${_solvers})
 target_link_libraries(isochor_solvers PRIVATE Eigen3::Eigen Threads::Threads ${CMAKE_DL_LIBS})
 foreach(backend MUMPS CHOLMOD METIS)
@@ -60,7 +64,7 @@ set_property(SOURCE ${PROJECT_SOURCE_DIR}/engine/solvers/linear_solver.cpp APPEN
   COMPILE_DEFINITIONS ISOCHOR_VERSION="${PROJECT_VERSION}")
 # Under the GPL, hence apart and only on request.
 if(ISOCHOR_HAVE_CHOLMOD_SUPERNODAL)
-  isochor_sources(_solvers_gpl engine/solvers/gpl)
+  isochor_sources(_solvers_gpl engine/solvers/foreign/gpl)
   isochor_module(solvers_gpl ${_solvers_gpl})
   target_link_libraries(isochor_solvers_gpl PRIVATE isochor_solvers CHOLMOD::CHOLMOD)
   set_property(SOURCE ${PROJECT_SOURCE_DIR}/engine/solvers/linear_solver.cpp APPEND PROPERTY
@@ -68,17 +72,20 @@ if(ISOCHOR_HAVE_CHOLMOD_SUPERNODAL)
   target_link_libraries(isochor_solvers PRIVATE isochor_solvers_gpl)
 endif()
 
-isochor_sources(_engine engine engine/elements)
+isochor_sources(_engine engine/math engine/system engine/elements engine/solve engine/solve/newton engine/solve/kkt
+  engine/scene engine/step engine/world)
 isochor_module(engine ${_engine})
 # Square roots set no errno, so that they are taken eight at a time.
-set_source_files_properties(${PROJECT_SOURCE_DIR}/engine/svd3.cpp PROPERTIES COMPILE_OPTIONS -fno-math-errno)
+set_source_files_properties(${PROJECT_SOURCE_DIR}/engine/math/svd3.cpp PROPERTIES COMPILE_OPTIONS -fno-math-errno)
 target_link_libraries(isochor_engine PUBLIC isochor_mesh isochor_solvers PRIVATE Eigen3::Eigen TBB::tbb)
 
 isochor_sources(_materials materials)
 isochor_module(materials ${_materials})
 target_link_libraries(isochor_materials PUBLIC isochor_engine PRIVATE Eigen3::Eigen)
 
-isochor_sources(_constraints constraints)
+isochor_sources(_constraints constraints/stencil constraints/volume constraints/chamber constraints/layer
+  constraints/line constraints/support constraints/load constraints/contact constraints/contact/friction
+  constraints/contact/shape constraints/contact/rigid constraints/contact/surface)
 isochor_module(constraints ${_constraints})
 target_link_libraries(isochor_constraints PUBLIC isochor_engine PRIVATE Eigen3::Eigen)
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/base.h"
+#include "engine/base/base.h"
 #include "fuzz/input.h"
 #include "scenes/scene.h"
 

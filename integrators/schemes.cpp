@@ -1,6 +1,6 @@
 #include "isochor/schemes.h"
 
-#include "engine/time_scheme.h"
+#include "engine/step/time_scheme.h"
 
 namespace isochor {
 

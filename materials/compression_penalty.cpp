@@ -2,8 +2,8 @@
 // element has against changes of its own volume where rows only keep that of a zone.
 #include <cmath>
 
-#include "engine/material_model.h"
-#include "engine/text.h"
+#include "engine/base/text.h"
+#include "engine/elements/material_model.h"
 #include "isochor/materials.h"
 #include "materials/energy_batch.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/material.h"
+#include "engine/elements/material.h"
 
 namespace isochor {
 

@@ -1,7 +1,7 @@
 // A material of checked small-strain constants and ready energies: what most files of this folder end in.
 #pragma once
 
-#include "engine/material_model.h"
+#include "engine/elements/material_model.h"
 #include "materials/elastic_constants.h"
 
 namespace isochor {

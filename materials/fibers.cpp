@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <limits>
 
-#include "engine/material_model.h"
-#include "engine/text.h"
+#include "engine/base/text.h"
+#include "engine/elements/material_model.h"
 #include "isochor/materials.h"
 
 namespace isochor {

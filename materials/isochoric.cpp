@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/text.h"
+#include "engine/base/text.h"
 #include "materials/energy_batch.h"
 #include "materials/energy_model.h"
 

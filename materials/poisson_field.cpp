@@ -10,8 +10,8 @@
 #include <limits>
 #include <map>
 
-#include "engine/material_model.h"
-#include "engine/text.h"
+#include "engine/base/text.h"
+#include "engine/elements/material_model.h"
 #include "isochor/materials.h"
 
 namespace isochor {

@@ -2,8 +2,8 @@
 // a factor. Poisson's ratio and the shape of the law stay.
 #include <cmath>
 
-#include "engine/material_model.h"
-#include "engine/text.h"
+#include "engine/base/text.h"
+#include "engine/elements/material_model.h"
 #include "isochor/materials.h"
 
 namespace isochor {

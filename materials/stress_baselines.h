@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/svd3.h"
+#include "engine/math/svd3.h"
 
 namespace isochor {
 

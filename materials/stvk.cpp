@@ -2,7 +2,7 @@
 // request the resistance k/12 ((1 - J)/6)^3 against compression.
 #include <cmath>
 
-#include "engine/text.h"
+#include "engine/base/text.h"
 #include "materials/energy_model.h"
 #include "materials/stretch_batch.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/text.h"
+#include "engine/base/text.h"
 
 namespace isochor {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
-#include "engine/builder.h"
-#include "engine/system.h"
+#include "engine/scene/builder.h"
+#include "engine/system/system.h"
 
 namespace isochor {
 

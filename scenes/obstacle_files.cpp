@@ -1,6 +1,6 @@
 #include "scenes/obstacle_files.h"
 
-#include "engine/text.h"
+#include "engine/base/text.h"
 #include "scenes/body_parts.h"
 
 namespace isochor {

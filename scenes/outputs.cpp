@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <set>
 
-#include "engine/mesh/atomic_file.h"
+#include "engine/base/atomic_file.h"
 #include "scenes/run_page.h"
 #include "scenes/scene_file.h"
 

@@ -8,7 +8,7 @@
 #include <new>
 #include <thread>
 
-#include "engine/text.h"
+#include "engine/base/text.h"
 #include "scenes/contact_watch.h"
 #include "scenes/outputs.h"
 #include "scenes/probes.h"

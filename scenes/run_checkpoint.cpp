@@ -7,8 +7,8 @@
 #include <fstream>
 #include <system_error>
 
-#include "engine/bytes.h"
-#include "engine/mesh/atomic_file.h"
+#include "engine/base/atomic_file.h"
+#include "engine/base/bytes.h"
 #include "results_page.h"
 
 namespace isochor {

@@ -6,8 +6,8 @@
 #include <map>
 #include <numbers>
 
-#include "constraints/obstacle_shape.h"
-#include "constraints/rigid_body.h"
+#include "constraints/contact/rigid/rigid_body.h"
+#include "constraints/contact/shape/obstacle_shape.h"
 #include "isochor/painted.h"
 
 namespace isochor {

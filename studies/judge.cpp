@@ -7,8 +7,8 @@
 #include <map>
 #include <tuple>
 
+#include "engine/base/text.h"
 #include "engine/elements/reference_element.h"
-#include "engine/text.h"
 
 namespace isochor::studies {
 

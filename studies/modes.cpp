@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/assembly.h"
-#include "engine/parallel.h"
-#include "engine/system.h"
+#include "engine/base/parallel.h"
+#include "engine/system/assembly.h"
+#include "engine/system/system.h"
 #include "scenes/explain.h"
 
 namespace isochor::studies {

@@ -8,10 +8,10 @@
 #include <limits>
 #include <map>
 
-#include "engine/assembly.h"
+#include "engine/base/parallel.h"
 #include "engine/mesh/cell_shape.h"
-#include "engine/parallel.h"
-#include "engine/system.h"
+#include "engine/system/assembly.h"
+#include "engine/system/system.h"
 #include "scenes/explain.h"
 
 namespace isochor::studies {

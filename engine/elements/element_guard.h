@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/material.h"
+#include "engine/elements/material.h"
 
 namespace isochor {
 

@@ -2,8 +2,8 @@
 // and the patches of edge-smoothed tets differ only in how many nodes and points a stencil has.
 #pragma once
 
-#include "engine/material.h"
-#include "engine/pool.h"
+#include "engine/elements/material.h"
+#include "engine/system/pool.h"
 
 namespace isochor {
 

@@ -5,8 +5,8 @@
 #include <set>
 #include <unordered_map>
 
-#include "engine/mesh/check_parts.h"
-#include "engine/triangle.h"
+#include "engine/math/triangle.h"
+#include "engine/mesh/check/check_parts.h"
 #include "isochor/mesh_select.h"
 
 namespace isochor {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/linear_solver.h"
+#include "engine/solvers/linear_solver.h"
 
 namespace isochor {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <new>
 
-#include "engine/base.h"
+#include "engine/base/base.h"
 #include "engine/solvers/pattern_check.h"
 
 namespace isochor {

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/linear_solver.h"
+#include "engine/solvers/linear_solver.h"
 
 namespace isochor {
 

@@ -1,15 +1,15 @@
-#include "engine/linear_solver.h"
+#include "engine/solvers/linear_solver.h"
 
-#include "engine/solvers/cholmod_solver.h"
 #include "engine/solvers/chosen_solver.h"
+#include "engine/solvers/foreign/cholmod_solver.h"
 #ifdef ISOCHOR_HAVE_CHOLMOD_SUPERNODAL
-#include "engine/solvers/gpl/cholmod_supernodal.h"
+#include "engine/solvers/foreign/gpl/cholmod_supernodal.h"
 #endif
-#include "engine/solvers/eigen_solver.h"
-#include "engine/solvers/iterative_solver.h"
-#include "engine/solvers/lu_solver.h"
-#include "engine/solvers/multifrontal_solver.h"
-#include "engine/solvers/mumps_solver.h"
+#include "engine/solvers/foreign/eigen_solver.h"
+#include "engine/solvers/foreign/mumps_solver.h"
+#include "engine/solvers/front/lu_solver.h"
+#include "engine/solvers/front/multifrontal_solver.h"
+#include "engine/solvers/iterative/iterative_solver.h"
 #include "engine/solvers/ordering.h"
 
 namespace isochor {

@@ -10,8 +10,8 @@
 #include <mutex>
 #include <numeric>
 
-#include "engine/base.h"
-#include "engine/solvers/mumps_solver.h"
+#include "engine/base/base.h"
+#include "engine/solvers/foreign/mumps_solver.h"
 
 #ifdef ISOCHOR_HAVE_METIS
 #include <metis.h>

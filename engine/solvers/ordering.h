@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/linear_solver.h"
+#include "engine/solvers/linear_solver.h"
 
 namespace isochor {
 

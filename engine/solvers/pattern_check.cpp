@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/base.h"
+#include "engine/base/base.h"
 
 namespace isochor {
 

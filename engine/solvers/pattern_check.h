@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "engine/linear_solver.h"
+#include "engine/solvers/linear_solver.h"
 
 namespace isochor {
 

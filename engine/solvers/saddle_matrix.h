@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/linear_solver.h"
-#include "engine/solvers/block_matrix.h"
+#include "engine/solvers/front/block_matrix.h"
+#include "engine/solvers/linear_solver.h"
 
 namespace isochor {
 

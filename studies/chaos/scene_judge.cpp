@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "engine/text.h"
+#include "engine/base/text.h"
 #include "scenes/body_parts.h"
 #include "studies/chaos/distances.h"
 

@@ -1,7 +1,7 @@
 // The local penalty on its own, and with a zone of exact volume: two tets, one of them crushed flat.
 #include <cmath>
 
-#include "engine/material_model.h"
+#include "engine/elements/material_model.h"
 #include "numbers/cube.h"
 #include "support/worlds.h"
 

@@ -1,5 +1,5 @@
 // Points of cells as weighted sums of nodes.
-#include "constraints/embedding.h"
+#include "constraints/stencil/embedding.h"
 
 #include <cmath>
 #include <random>

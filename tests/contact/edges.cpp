@@ -2,8 +2,8 @@
 #include <cmath>
 #include <random>
 
-#include "constraints/crossing.h"
-#include "constraints/skin_edges.h"
+#include "constraints/contact/surface/crossing.h"
+#include "constraints/contact/surface/skin_edges.h"
 #include "isochor/contact.h"
 #include "support/hyper_dual.h"
 #include "support/worlds.h"

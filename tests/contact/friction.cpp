@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "constraints/contact_pool.h"
+#include "constraints/contact/rigid/contact_pool.h"
 #include "isochor/contact.h"
 #include "support/worlds.h"
 

@@ -1,7 +1,7 @@
 // Pairs of soft bodies whose answer is known by symmetry, over pressures and contrasts of stiffness.
 #include <cmath>
 
-#include "constraints/contact_rows.h"
+#include "constraints/contact/contact_rows.h"
 #include "isochor/contact.h"
 #include "support/worlds.h"
 

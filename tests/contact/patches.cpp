@@ -2,9 +2,9 @@
 #include <cmath>
 #include <random>
 
-#include "constraints/patch_distance.h"
-#include "constraints/skin.h"
-#include "engine/triangle.h"
+#include "constraints/contact/surface/patch_distance.h"
+#include "constraints/contact/surface/skin.h"
+#include "engine/math/triangle.h"
 #include "support/worlds.h"
 
 namespace {

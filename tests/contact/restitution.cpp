@@ -1,7 +1,7 @@
 // Newton's law of impact: heights of bounces, energy, and rest.
 #include <cmath>
 
-#include "engine/time_scheme.h"
+#include "engine/step/time_scheme.h"
 #include "isochor/contact.h"
 #include "support/worlds.h"
 

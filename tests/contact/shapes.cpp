@@ -3,7 +3,7 @@
 #include <random>
 
 #include "catch.h"
-#include "constraints/obstacle_shape.h"
+#include "constraints/contact/shape/obstacle_shape.h"
 
 using namespace isochor;
 

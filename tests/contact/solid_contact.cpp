@@ -1,7 +1,7 @@
 // Soft bodies against triangle meshes and distance fields, held against the shapes that they stand for.
 #include <cmath>
 
-#include "constraints/obstacle_shape.h"
+#include "constraints/contact/shape/obstacle_shape.h"
 #include "solid_shapes.h"
 
 namespace {

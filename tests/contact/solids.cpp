@@ -1,7 +1,7 @@
 // Solids of triangles and of distances on a grid: distances, derivatives, ways through, and what is refused.
 #include <random>
 
-#include "constraints/obstacle_shape.h"
+#include "constraints/contact/shape/obstacle_shape.h"
 #include "solid_shapes.h"
 
 using namespace isochor;

@@ -4,9 +4,9 @@
 #include <functional>
 
 #include "catch.h"
-#include "constraints/segment_pool.h"
-#include "constraints/surface_pool.h"
-#include "constraints/surface_strain.h"
+#include "constraints/layer/surface_strain.h"
+#include "constraints/stencil/segment_pool.h"
+#include "constraints/stencil/surface_pool.h"
 #include "contract/formulas.h"
 #include "contract/scene_probe.h"
 

@@ -3,7 +3,7 @@
 
 #include "catch.h"
 #include "contract/registry.h"
-#include "engine/material_model.h"
+#include "engine/elements/material_model.h"
 
 using namespace isochor;
 

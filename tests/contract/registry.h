@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/material.h"
+#include "engine/elements/material.h"
 #include "isochor/effects.h"
 #include "support/hyper_dual.h"
 

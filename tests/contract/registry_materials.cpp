@@ -1,7 +1,7 @@
 #include "contract/formulas.h"
 #include "contract/registry.h"
 #include "engine/elements/element_guard.h"
-#include "engine/material_model.h"
+#include "engine/elements/material_model.h"
 
 namespace test {
 

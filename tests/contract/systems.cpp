@@ -7,7 +7,7 @@
 
 #include "catch.h"
 #include "contract/scene_probe.h"
-#include "engine/kkt.h"
+#include "engine/solve/kkt/kkt.h"
 #include "support/allocations.h"
 #include "support/meshes.h"
 

@@ -1,7 +1,7 @@
 // Damping: derivatives within an increment, no price for rigid motions, and closed forms of creep and fall.
 #include <random>
 
-#include "engine/assembly.h"
+#include "engine/system/assembly.h"
 #include "numbers/cube.h"
 #include "support/compiled.h"
 

@@ -2,10 +2,10 @@
 // needs is computed, and errors in L2 are compared between two meshes.
 #include <cmath>
 
-#include "constraints/surface_pool.h"
+#include "constraints/stencil/surface_pool.h"
+#include "engine/elements/material.h"
+#include "engine/elements/material_model.h"
 #include "engine/elements/reference_element.h"
-#include "engine/material.h"
-#include "engine/material_model.h"
 #include "engine/mesh/cell_shape.h"
 #include "support/worlds.h"
 

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "engine/linear_solver.h"
-#include "engine/pool.h"
+#include "engine/solvers/linear_solver.h"
+#include "engine/system/pool.h"
 #include "support/compiled.h"
 
 namespace test {

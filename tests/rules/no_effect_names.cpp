@@ -13,13 +13,15 @@ namespace fs = std::filesystem;
 std::vector<fs::path> general_code() {
   const fs::path engine = fs::path(ISOCHOR_SOURCE) / "engine";
   std::vector<fs::path> files;
-  for (const char* name : {"newton", "system", "assembly", "parallel"}) {
+  for (const char* name : {"solve/newton/newton", "system/system", "system/assembly", "base/parallel"}) {
     for (const char* ending : {".h", ".cpp"}) files.push_back(engine / (std::string(name) + ending));
   }
-  files.push_back(engine / "time_scheme.h");
-  files.push_back(engine / "linear_solver.h");
-  files.push_back(engine / "pool.h");
-  for (const auto& entry : fs::directory_iterator(engine / "solvers")) files.push_back(entry.path());
+  files.push_back(engine / "step/time_scheme.h");
+  files.push_back(engine / "solvers/linear_solver.h");
+  files.push_back(engine / "system/pool.h");
+  for (const auto& entry : fs::recursive_directory_iterator(engine / "solvers")) {
+    if (entry.is_regular_file()) files.push_back(entry.path());
+  }
   for (const auto& entry : fs::directory_iterator(fs::path(ISOCHOR_SOURCE) / "integrators")) {
     files.push_back(entry.path());
   }

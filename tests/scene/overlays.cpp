@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "catch.h"
-#include "constraints/obstacle_shape.h"
+#include "constraints/contact/shape/obstacle_shape.h"
 #include "page_surface.h"
 #include "scenes/library.h"
 #include "scenes/run_overlays.h"

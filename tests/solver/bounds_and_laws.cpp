@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "engine/builder.h"
+#include "engine/scene/builder.h"
 #include "support/worlds.h"
 
 namespace {

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "engine/solvers/chosen_solver.h"
-#include "engine/solvers/eigen_solver.h"
-#include "engine/solvers/iterative_solver.h"
+#include "engine/solvers/foreign/eigen_solver.h"
+#include "engine/solvers/iterative/iterative_solver.h"
 #include "solver/linear_support.h"
 #include "support/worlds.h"
 

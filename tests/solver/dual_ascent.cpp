@@ -1,5 +1,5 @@
 // How fast dual ascent brings the volume back: the experiment of Francu et al. 2021, figure 8, on our bubble.
-#include "engine/dual_ascent.h"
+#include "engine/solve/dual_ascent.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // The generalized minimal residual method on small dense systems.
-#include "engine/gmres.h"
+#include "engine/math/gmres.h"
 
 #include <Eigen/Dense>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/solvers/iterative_solver.h"
+#include "engine/solvers/iterative/iterative_solver.h"
 #include "solver/linear_support.h"
 #include "support/worlds.h"
 

@@ -5,8 +5,8 @@
 #include <random>
 #include <vector>
 
-#include "engine/base.h"
-#include "engine/linear_solver.h"
+#include "engine/base/base.h"
+#include "engine/solvers/linear_solver.h"
 
 namespace test {
 

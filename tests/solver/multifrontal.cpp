@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "catch.h"
-#include "engine/parallel.h"
-#include "engine/solvers/eigen_solver.h"
-#include "engine/solvers/multifrontal_solver.h"
-#include "engine/solvers/mumps_solver.h"
+#include "engine/base/parallel.h"
+#include "engine/solvers/foreign/eigen_solver.h"
+#include "engine/solvers/foreign/mumps_solver.h"
+#include "engine/solvers/front/multifrontal_solver.h"
 #include "solver/linear_support.h"
 
 namespace {

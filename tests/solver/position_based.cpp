@@ -1,6 +1,6 @@
 // Position-based dynamics on the same stencils and rows: what it keeps exactly, and how far from the implicit
 // step it ends.
-#include "engine/position_based.h"
+#include "engine/solve/position_based.h"
 
 #include <cmath>
 

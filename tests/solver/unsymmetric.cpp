@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "catch.h"
-#include "engine/solvers/lu_solver.h"
-#include "engine/solvers/mumps_solver.h"
+#include "engine/solvers/foreign/mumps_solver.h"
+#include "engine/solvers/front/lu_solver.h"
 #include "solver/linear_support.h"
 
 using namespace isochor;

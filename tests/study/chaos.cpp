@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <set>
 
-#include "engine/base.h"
+#include "engine/base/base.h"
 #include "scenes/scene_file.h"
 #include "studies/chaos/child.h"
 #include "studies/chaos/scene_judge.h"

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/builder.h"
-#include "engine/newton.h"
-#include "engine/system.h"
+#include "engine/scene/builder.h"
+#include "engine/solve/newton/newton.h"
+#include "engine/system/system.h"
 
 namespace test {
 

@@ -1,7 +1,7 @@
 // Scenes of contact that several tests start from.
 #pragma once
 
-#include "engine/unsymmetric_newton.h"
+#include "engine/solve/newton/unsymmetric_newton.h"
 #include "isochor/contact.h"
 #include "support/compiled.h"
 #include "support/worlds.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/svd3.h"
+#include "engine/math/svd3.h"
 
 namespace test {
 

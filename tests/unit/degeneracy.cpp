@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "catch.h"
-#include "engine/material_model.h"
+#include "engine/elements/material_model.h"
 #include "isochor/materials.h"
 #include "materials/stress_baselines.h"
 #include "support/gradients.h"

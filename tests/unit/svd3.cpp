@@ -1,5 +1,5 @@
 // Singular values in the rotation-variant form: what the header promises, for matrices of every kind.
-#include "engine/svd3.h"
+#include "engine/math/svd3.h"
 
 #include <Eigen/Dense>
 #include <random>

@@ -1,7 +1,7 @@
 // Materials with constants of their own, fibers and fields: what is refused, and with which words.
 #include "isochor/materials.h"
 
-#include "engine/material_model.h"
+#include "engine/elements/material_model.h"
 #include "numbers/cube.h"
 #include "support/worlds.h"
 

@@ -4,7 +4,7 @@
 #include <functional>
 #include <random>
 
-#include "engine/base.h"
+#include "engine/base/base.h"
 #include "isochor/contact.h"
 #include "support/worlds.h"
 

@@ -1,0 +1,249 @@
+#include "isochor/contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "constraints/contact/bouncing_rows.h"
+#include "constraints/contact/contact_rows.h"
+#include "constraints/contact/rigid/contact_pool.h"
+#include "constraints/contact/rigid/flush_nodes.h"
+#include "constraints/contact/rigid/rigid_body.h"
+#include "constraints/stencil/embedding.h"
+#include "constraints/stencil/surface_nodes.h"
+#include "engine/base/text.h"
+#include "engine/scene/builder.h"
+
+namespace isochor {
+
+namespace {
+
+class ContactInstance final : public EffectInstance {
+ public:
+  ContactInstance(std::shared_ptr<const ContactPool> pool, std::shared_ptr<const ContactRows> rows,
+                  Index row_pool)
+      : pool_(std::move(pool)), rows_(std::move(rows)), row_pool_(row_pool) {}
+
+  void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
+    const ContactFrame frame = pool_->frame(c.state.t, c.state.x);
+    const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
+    const bool rubs = pool_->memory() > 0;
+    const auto memory = memory_of(c);
+    Vec3 force{};
+    double normal = 0, tangential = 0, area = 0, pressure = 0, gap = std::numeric_limits<double>::infinity();
+    double depth = 0;
+    for (Index s = 0; s < pool_->stencils(); ++s) {
+      gap = std::min(gap, pool_->gap(s, frame, c.state.x));
+      if (!(lambda[at(s)] < 0)) continue;
+      normal -= lambda[at(s)];
+      area += rows_->area[at(s)];
+      depth = std::max(depth, rows_->depth(s, lambda[at(s)]) / std::sqrt(rows_->area[at(s)]));
+      pressure = std::max(pressure, -lambda[at(s)] / rows_->area[at(s)]);
+      const Distance d = distance_to(pool_->shape(), pool_->own_place(s, frame, c.state.x));
+      force -= lambda[at(s)] * (frame.A * d.normal);
+      if (!rubs) continue;
+      const Vec3 f = pool_->kept_pull(s, memory);
+      tangential += std::sqrt(dot(f, f));
+      force -= frame.A * f;
+    }
+    const std::string name(rows_->name());
+    const auto put = [&](const char* quantity, const char* unit, double value) {
+      out.push_back({name, "contact", quantity, unit, value});
+    };
+    put("force_x", "N", force.x);
+    put("force_y", "N", force.y);
+    put("force_z", "N", force.z);
+    put("normal_force", "N", normal);
+    put("friction_force", "N", tangential);
+    put("contact_area", "m2", area);
+    put("largest_pressure", "Pa", pressure);
+    put("smallest_gap", "m", gap);
+    put("depth_over_face", "", depth);
+  }
+
+  bool surface_forces(const GaugeContext& c, SurfaceForces& f) const override {
+    const std::size_t nodes = c.state.x.size();
+    f.normal.assign(nodes, 0);
+    f.tangential.assign(nodes, Vec3{});
+    f.area.assign(nodes, 0);
+    const ContactFrame frame = pool_->frame(c.state.t, c.state.x);
+    const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
+    const auto memory = memory_of(c);
+    for (Index s = 0; s < pool_->stencils(); ++s) {
+      if (pool_->rides(s)) continue;  // a point of a rigid body is no node of a surface
+      const std::size_t node = at(pool_->nodes()[s][0]);
+      f.area[node] = rows_->area[at(s)];
+      if (!(lambda[at(s)] < 0)) continue;
+      f.normal[node] = -lambda[at(s)];
+      f.tangential[node] = -1.0 * (frame.A * pool_->kept_pull(s, memory));
+    }
+    return true;
+  }
+
+ private:
+  std::span<const double> memory_of(const GaugeContext& c) const {
+    if (pool_->memory() == 0) return {};
+    return std::span<const double>(c.state.extra)
+        .subspan(at(c.system.first_stencil_memory(rows_->stencil_pool)),
+                 static_cast<std::size_t>(pool_->memory()));
+  }
+
+  std::shared_ptr<const ContactPool> pool_;
+  std::shared_ptr<const ContactRows> rows_;
+  Index row_pool_;
+};
+
+class ContactEffect final : public EffectSource {
+ public:
+  explicit ContactEffect(ContactDef def) : def_(std::move(def)) {}
+  const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
+
+  Result<void> check() const override {
+    if (auto r = check_obstacle(def_.obstacle); !r) return Error{who() + r.error()};
+    for (const auto& [key, value, unit] : {std::tuple{"compliance", def_.compliance, "m/Pa"},
+                                           {"friction", def_.friction, ""},
+                                           {"static_friction", def_.static_friction, ""},
+                                           {"stick_stiffness", def_.stick_stiffness, "Pa/m"}}) {
+      if (value >= 0 && std::isfinite(value)) continue;
+      return Error{who() + key + " = " + number(value) + (*unit ? " " : "") + unit +
+                   "; it must be zero or positive"};
+    }
+    if (def_.static_friction > 0 && def_.static_friction < def_.friction) {
+      return Error{who() + "static_friction = " + number(def_.static_friction) + " with friction = " +
+                   number(def_.friction) + "; it must not be the smaller one, or 0 for the same"};
+    }
+    if (!(def_.restitution >= 0 && def_.restitution <= 1)) {
+      return Error{who() + "restitution = " + number(def_.restitution) +
+                   "; it must be between 0 and 1, what more would add energy in every impact"};
+    }
+    if (!(def_.restitution_speed >= 0 && std::isfinite(def_.restitution_speed))) {
+      return Error{who() + "restitution_speed = " + number(def_.restitution_speed) +
+                   " m/s; it must be zero or positive"};
+    }
+    if (def_.restitution > 0 && def_.compliance > 0) {
+      return Error{who() + "restitution = " + number(def_.restitution) +
+                   " with compliance = " + number(def_.compliance) +
+                   " m/Pa; a soft layer bounces by its own elasticity: leave one of them 0"};
+    }
+    if (!(def_.resolve_time > 0)) {
+      return Error{who() + "resolve_time = " + number(def_.resolve_time) + " s; it must be positive"};
+    }
+    return {};
+  }
+
+  Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
+    const std::string called = "contact \"" + def_.name + "\"";
+    std::optional<ControlPoints> points;
+    Obstacle shape = def_.obstacle;
+    if (!def_.against.empty()) {
+      auto rigid = find_rigid(builder, def_.against, called);
+      if (!rigid) return Error{rigid.error()};
+      points = rigid.value().points;
+      shape = rigid.value().shape;
+    }
+    auto pool =
+        std::make_shared<ContactPool>(def_.name, shape, FrictionLaw(def_.friction, def_.static_friction),
+                                      points, def_.coupling == FrictionCoupling::coupled);
+    auto rows = def_.restitution > 0
+                    ? std::make_shared<BouncingRows>(def_.name, def_.resolve_time, pool, def_.restitution,
+                                                     def_.restitution_speed)
+                    : std::make_shared<ContactRows>(def_.name, def_.resolve_time);
+    if (auto r = def_.rigid.empty() ? add_nodes(builder, *pool, *rows, called)
+                                    : add_touch_points(builder, *pool, *rows, called);
+        !r) {
+      return Error{r.error()};
+    }
+    pool->finish();
+    if (auto r = find_overlap(builder, *pool, *rows); !r) return Error{r.error()};
+    rows->stencil_pool = builder.add_stencils(pool);
+    const Index row_pool = builder.add_rows(rows);
+    return std::unique_ptr<EffectInstance>(std::make_unique<ContactInstance>(pool, rows, row_pool));
+  }
+
+ private:
+  std::string who() const { return "contact \"" + def_.name + "\": "; }
+
+  double stick(double mu, double area) const {
+    return def_.stick_stiffness > 0 ? def_.stick_stiffness * area : 100 * mu * std::sqrt(area);
+  }
+
+  Result<void> add_nodes(const Builder& builder, ContactPool& pool, ContactRows& rows,
+                         const std::string& called) const {
+    auto faces = surface_faces(builder, def_.body, def_.surfaces, called);
+    if (!faces) return Error{faces.error()};
+    const BodyData& body = builder.body(def_.body);
+    const double mu = stiffest(body);
+    const auto per = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
+    const std::vector<NodeCells> cells = cells_around(body, builder.rest());
+    const std::vector<FlatSide> sides =
+        pool.follows_pose() ? flat_sides(def_.obstacle) : std::vector<FlatSide>();
+    const ContactFrame frame = pool.frame(0, builder.rest());
+    for (const auto& [node, area] : surface_nodes(faces.value(), per, builder.rest())) {
+      if (builder.given_directions(node) == 3) continue;  // goes where it is told to
+      const NodeCells& around = cells[at(node - body.first_node)];
+      pool.add(node, stick(mu, area), around.size,
+               inset_of_flush(def_.obstacle, sides, frame.to_own(builder.rest()[at(node)]),
+                              transposed_times(frame.A, around.inward), around.size));
+      rows.add(mu, area, builder.length(), def_.compliance);
+    }
+    if (rows.rows() > 0) return {};
+    return Error{who() + "all nodes of its surfaces are held by supports; take surfaces that can move"};
+  }
+
+  Result<void> add_touch_points(Builder& builder, ContactPool& pool, ContactRows& rows,
+                                const std::string& called) const {
+    if (def_.rigid == def_.against) return Error{who() + "a rigid body does not touch itself"};
+    auto rigid = find_rigid(builder, def_.rigid, called);
+    if (!rigid) return Error{rigid.error()};
+    double mu = 0;
+    for (Index b = 0; b < builder.body_count(); ++b)
+      mu = std::max(mu, stiffest(builder.body(static_cast<BodyId>(b))));
+    const double extent = smallest_extent(rigid.value().shape);
+    const auto touches = touch_points(rigid.value().shape);
+    const double area = extent * extent / static_cast<double>(touches.size());
+    for (const TouchPoint& t : touches) {
+      pool.add(rigid.value().points, t.own, t.offset, stick(mu, area));
+      rows.add(mu, area, builder.length(), def_.compliance);
+    }
+    return {};
+  }
+
+  Result<void> find_overlap(const Builder& builder, const ContactPool& pool, ContactRows& rows) const {
+    const ContactFrame frame = pool.frame(0, builder.rest());
+    Index worst = -1, inside = 0;
+    double deepest = -1e-9 * builder.length();
+    std::vector<double> overlap(rows.area.size(), 0.0);
+    for (Index s = 0; s < pool.stencils(); ++s) {
+      const double gap = pool.gap(s, frame, builder.rest());
+      overlap[at(s)] = std::min(gap, 0.0);
+      if (gap < -1e-9 * builder.length()) ++inside;
+      if (gap >= deepest) continue;
+      deepest = gap;
+      worst = pool.nodes()[s][0];
+    }
+    if (worst < 0) return {};
+    if (def_.initial_overlap == InitialOverlap::resolve) {
+      rows.overlap = std::move(overlap);
+      return {};
+    }
+    const std::string what = def_.rigid.empty()
+                                 ? " nodes of body \"" + builder.body(def_.body).name +
+                                       "\" are inside the obstacle at the start, node " +
+                                       std::to_string(worst - builder.body(def_.body).first_node)
+                                 : " points of rigid body \"" + def_.rigid +
+                                       "\" are inside the obstacle at the start, the deepest";
+    return Error{who() + std::to_string(inside) + what + " by " + number(-deepest) +
+                 " m; move one of the two, or set initial_overlap to resolve to have them pushed out"};
+  }
+
+  ContactDef def_;
+};
+
+}  // namespace
+
+EffectPtr contact(ContactDef def) {
+  return std::make_shared<ContactEffect>(std::move(def));
+}
+
+}  // namespace isochor

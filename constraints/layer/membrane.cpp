@@ -1,0 +1,107 @@
+// A neo-Hookean membrane on faces of a body: in-plane stretch and shear in plane stress, no bending.
+#include <cmath>
+#include <limits>
+
+#include "constraints/layer/surface_strain.h"
+#include "engine/base/text.h"
+#include "engine/scene/builder.h"
+
+namespace isochor {
+
+namespace {
+
+// Psi = mu/2 (I_3 - 3) + mu/(2 b) (J^(-2 b) - 1), b = nu/(1 - 2 nu), whose stress across the thickness
+// vanishes at a stretch of area ratio^(-c), c = nu/(1 - nu). What is left per thickness is
+// mu/2 (tr C - 2) + mu/(2 c) (q^(-c) - 1); nu = 0.5 is the incompressible membrane, c = 0 the limit
+// -mu/2 log q.
+class MembranePool final : public SurfaceStrainPool {
+ public:
+  MembranePool(std::string name, std::size_t nodes_per_face, std::span<const Index> faces,
+               std::span<const Vec3> rest, double mu_thickness, double c)
+      : SurfaceStrainPool(std::move(name), Gives::energy, nodes_per_face, faces, rest),
+        mu_(mu_thickness),
+        c_(c) {}
+
+ protected:
+  SurfaceResponse respond(double trace_minus_2, double d) const override {
+    SurfaceResponse w;
+    w.value = std::numeric_limits<double>::infinity();
+    if (!(d > -1)) return w;
+    const double log_q = std::log1p(d), volumetric = c_ > 0 ? std::expm1(-c_ * log_q) / c_ : -log_q;
+    const double value = 0.5 * mu_ * (trace_minus_2 + volumetric);
+    const double q = -0.5 * mu_ * std::exp(-(c_ + 1) * log_q);
+    const double qq = 0.5 * mu_ * (c_ + 1) * std::exp(-(c_ + 2) * log_q);
+    if (!std::isfinite(value) || !std::isfinite(q) || !std::isfinite(qq)) return w;
+    w.value = value;
+    w.I = 0.5 * mu_;
+    w.q = q;
+    w.qq = qq;
+    return w;
+  }
+
+ private:
+  double mu_;  // shear modulus times thickness [N/m]
+  double c_;
+};
+
+class MembraneInstance final : public EffectInstance {
+ public:
+  MembraneInstance(std::string name, std::shared_ptr<const MembranePool> pool)
+      : name_(std::move(name)), pool_(std::move(pool)) {}
+  void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
+    out.push_back({name_, "membrane", "area", "m^2", pool_->area(c.state.x, c.system.parts().rest)});
+  }
+
+ private:
+  std::string name_;
+  std::shared_ptr<const MembranePool> pool_;
+};
+
+class MembraneEffect final : public EffectSource {
+ public:
+  explicit MembraneEffect(MembraneDef def) : def_(std::move(def)) {}
+  const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
+
+  Result<void> check() const override {
+    if (def_.surfaces.empty()) {
+      return Error{who() + "surfaces is empty; name the surfaces that carry the membrane"};
+    }
+    if (!(def_.young > 0) || !std::isfinite(def_.young)) {
+      return Error{who() + "young = " + number(def_.young) + " Pa; it must be positive"};
+    }
+    if (!(def_.thickness > 0) || !std::isfinite(def_.thickness)) {
+      return Error{who() + "thickness = " + number(def_.thickness) + " m; it must be positive"};
+    }
+    if (!(def_.poisson >= 0) || !(def_.poisson <= 0.5)) {
+      return Error{who() + "poisson = " + number(def_.poisson) +
+                   "; it must lie between 0 and 0.5, 0.5 is an incompressible membrane"};
+    }
+    return {};
+  }
+
+  Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
+    auto named = builder.faces(def_.body, def_.surfaces, def_.name);
+    if (!named) return Error{named.error()};
+    const auto per_face = static_cast<std::size_t>(nodes_per_face(builder.body(def_.body).mesh.cell_type));
+    const auto faces = distinct_faces(named.value(), per_face);
+    const double mu = def_.young / (2 * (1 + def_.poisson));
+    const auto pool = std::make_shared<MembranePool>(def_.name, per_face, faces, builder.rest(),
+                                                     mu * def_.thickness, def_.poisson / (1 - def_.poisson));
+    builder.add_stencils(pool);
+    return std::unique_ptr<EffectInstance>(std::make_unique<MembraneInstance>(def_.name, pool));
+  }
+
+ private:
+  std::string who() const { return "membrane \"" + def_.name + "\": "; }
+
+  MembraneDef def_;
+};
+
+}  // namespace
+
+EffectPtr membrane(MembraneDef def) {
+  return std::make_shared<MembraneEffect>(std::move(def));
+}
+
+}  // namespace isochor

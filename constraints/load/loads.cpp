@@ -1,0 +1,125 @@
+#include <cmath>
+
+#include "constraints/stencil/surface_pool.h"
+#include "engine/scene/builder.h"
+
+namespace isochor {
+
+namespace {
+
+bool finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// Fixed nodal forces times an amount.
+class DeadLoad final : public LoadPool {
+ public:
+  DeadLoad(std::string name, std::vector<std::pair<Index, Vec3>> forces, std::shared_ptr<Amount> amount)
+      : name_(std::move(name)), forces_(std::move(forces)), amount_(std::move(amount)) {}
+  std::string_view name() const override { return name_; }
+  void add(double t, std::span<Vec3> force) const override {
+    const double a = amount_->value(t);
+    for (const auto& [node, f] : forces_) force[at(node)] += a * f;
+  }
+
+ private:
+  std::string name_;
+  std::vector<std::pair<Index, Vec3>> forces_;
+  std::shared_ptr<Amount> amount_;
+};
+
+class LoadInstance final : public EffectInstance {
+ public:
+  explicit LoadInstance(std::shared_ptr<Amount> amount) : amount_(std::move(amount)) {}
+  Amount* amount() override { return amount_.get(); }
+
+ private:
+  std::shared_ptr<Amount> amount_;
+};
+
+std::unique_ptr<EffectInstance> add_dead_load(Builder& builder, const std::string& name,
+                                              std::vector<std::pair<Index, Vec3>> forces,
+                                              const Curve& curve) {
+  auto amount = std::make_shared<Amount>(curve);
+  builder.add_load(std::make_shared<DeadLoad>(name, std::move(forces), amount));
+  return std::make_unique<LoadInstance>(std::move(amount));
+}
+
+class TractionEffect final : public EffectSource {
+ public:
+  explicit TractionEffect(TractionDef def) : def_(std::move(def)) {}
+  const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
+
+  Result<void> check() const override {
+    if (!finite(def_.traction) || !finite(def_.total_force)) {
+      return Error{"traction \"" + def_.name + "\": traction and total_force must be finite numbers"};
+    }
+    const bool has_traction = dot(def_.traction, def_.traction) > 0,
+               has_force = dot(def_.total_force, def_.total_force) > 0;
+    if (has_traction && has_force) {
+      return Error{"traction \"" + def_.name + "\": both traction and total_force are given; give one"};
+    }
+    return {};
+  }
+
+  Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
+    const std::vector<std::string> surface = {def_.surface};
+    auto faces = builder.faces(def_.body, surface, def_.name);
+    if (!faces) return Error{faces.error()};
+    const auto per = static_cast<std::size_t>(nodes_per_face(builder.body(def_.body).mesh.cell_type));
+    std::vector<std::pair<Index, double>> area;
+    double total = 0;
+    for (std::size_t f = 0; f < faces.value().size(); f += per) {
+      const std::span<const Index> nodes(faces.value().data() + f, per);
+      for (const auto& [node, a] : nodal_areas(nodes, builder.rest())) {
+        area.emplace_back(node, a);
+        total += a;
+      }
+    }
+    const Vec3 traction =
+        dot(def_.total_force, def_.total_force) > 0 ? (1 / total) * def_.total_force : def_.traction;
+    std::vector<std::pair<Index, Vec3>> forces;
+    for (const auto& [node, a] : area) forces.emplace_back(node, a * traction);
+    return add_dead_load(builder, def_.name, std::move(forces), def_.amount);
+  }
+
+ private:
+  TractionDef def_;
+};
+
+class PointForceEffect final : public EffectSource {
+ public:
+  explicit PointForceEffect(PointForceDef def) : def_(std::move(def)) {}
+  const std::string& name() const override { return def_.name; }
+  void describe(Fingerprint& f) const override { f.add(def_); }
+
+  Result<void> check() const override {
+    if (!finite(def_.force)) return Error{"force \"" + def_.name + "\": force must be finite numbers"};
+    return {};
+  }
+
+  Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
+    auto nodes = builder.select(def_.where, def_.name);
+    if (!nodes) return Error{nodes.error()};
+    std::vector<std::pair<Index, Vec3>> forces;
+    for (const Index node : nodes.value()) {
+      forces.emplace_back(node, (1 / static_cast<double>(nodes.value().size())) * def_.force);
+    }
+    return add_dead_load(builder, def_.name, std::move(forces), def_.amount);
+  }
+
+ private:
+  PointForceDef def_;
+};
+
+}  // namespace
+
+EffectPtr traction(TractionDef def) {
+  return std::make_shared<TractionEffect>(std::move(def));
+}
+EffectPtr point_force(PointForceDef def) {
+  return std::make_shared<PointForceEffect>(std::move(def));
+}
+
+}  // namespace isochor

@@ -1,0 +1,197 @@
+#include "constraints/volume/volume_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace isochor {
+
+namespace {
+
+// Integral of N_k N_l over a stencil. A one-point tet takes the closed form V/20 (1 + delta).
+double pressure_mass(const SolidData& data, Index stencil, double volume, int k, int l) {
+  if (data.functions == 1) return volume / 20 * (k == l ? 2 : 1);
+  double sum = 0;
+  for (int q = 0; q < data.points; ++q) {
+    const double* N = data.shape.data() + static_cast<std::size_t>(q * data.functions);
+    sum += data.weight[at(stencil * data.points + q)] * N[k] * N[l];
+  }
+  return sum;
+}
+
+// All functions of a stencil together integrate Phi; N_k sum to one.
+void push_whole_stencil(RowPool& rows, Index stencil, int functions) {
+  for (int k = 0; k < functions; ++k) {
+    rows.map.item.push_back(stencil * functions + k);
+    rows.weight.push_back(1);
+  }
+}
+
+// `metric`: the volume over the shear modulus, summed over the stencils of the row.
+void finish_row(RowPool& rows, double volume, double metric) {
+  rows.map.offset.push_back(static_cast<Index>(rows.map.item.size()));
+  rows.metric.push_back(metric);
+  rows.measure.push_back(volume);
+}
+
+}  // namespace
+
+std::shared_ptr<RowPool> element_volume_rows(const VolumeRegion& region) {
+  auto rows = std::make_shared<VolumeRowPool>(region.name);
+  rows->stencil_pool = region.stencil_pool;
+  for (Index s = 0; s < region.pool->stencils(); ++s) {
+    const double volume = region.pool->volume(s);
+    push_whole_stencil(*rows, s, region.pool->functions());
+    finish_row(*rows, volume, volume / region.shear_modulus_of(s));
+    rows->compliance.push_back({s, s, volume * region.inverse_bulk_of(s)});
+  }
+  return rows;
+}
+
+std::shared_ptr<RowPool> total_volume_row(const VolumeRegion& region) {
+  auto rows = std::make_shared<VolumeRowPool>(region.name);
+  rows->stencil_pool = region.stencil_pool;
+  double volume = 0, metric = 0, compliance = 0;
+  for (Index s = 0; s < region.pool->stencils(); ++s) {
+    const double V = region.pool->volume(s);
+    volume += V;
+    metric += V / region.shear_modulus_of(s);
+    compliance += V * region.inverse_bulk_of(s);
+    push_whole_stencil(*rows, s, region.pool->functions());
+  }
+  finish_row(*rows, volume, metric);
+  rows->compliance.push_back({0, 0, compliance});
+  return rows;
+}
+
+bool is_hard_zone(const VolumeRegion& region, const VolumeZones& zones, std::size_t zone) {
+  return zones.compliance[zone] == 0 || std::all_of(zones.stencils[zone].begin(), zones.stencils[zone].end(),
+                                                    [&](Index s) { return region.inverse_bulk_of(s) == 0; });
+}
+
+std::shared_ptr<RowPool> zone_volume_rows(const VolumeRegion& region, const VolumeZones& zones) {
+  auto rows = std::make_shared<VolumeRowPool>(region.name);
+  rows->stencil_pool = region.stencil_pool;
+  const SolidPool& pool = *region.pool;
+  const auto weight_of = [&](std::size_t z, std::size_t i) {
+    return zones.weight.empty() || zones.weight[z].empty() ? 1.0 : zones.weight[z][i];
+  };
+  std::vector<double> sharing(at(pool.stencils()), 0);
+  for (std::size_t z = 0; z < zones.stencils.size(); ++z) {
+    if (!std::isfinite(zones.compliance[z]) || is_hard_zone(region, zones, z)) continue;
+    for (std::size_t i = 0; i < zones.stencils[z].size(); ++i) {
+      sharing[at(zones.stencils[z][i])] += weight_of(z, i);
+    }
+  }
+  for (std::size_t z = 0; z < zones.stencils.size(); ++z) {
+    if (!std::isfinite(zones.compliance[z])) continue;
+    const bool hard = is_hard_zone(region, zones, z);
+    double volume = 0, metric = 0, compliance = 0;
+    for (std::size_t i = 0; i < zones.stencils[z].size(); ++i) {
+      const Index s = zones.stencils[z][i];
+      const double weight = hard ? weight_of(z, i) : weight_of(z, i) / sharing[at(s)];
+      const double share = weight * pool.volume(s);
+      volume += share;
+      metric += share / region.shear_modulus_of(s);
+      compliance += share * zones.compliance[z] * region.inverse_bulk_of(s);
+      for (int k = 0; k < pool.functions(); ++k) {
+        rows->map.item.push_back(s * pool.functions() + k);
+        rows->weight.push_back(weight);
+      }
+    }
+    if (!hard) rows->compliance.push_back({rows->rows(), rows->rows(), compliance});
+    finish_row(*rows, volume, metric);
+  }
+  return rows;
+}
+
+VolumeZones ring_zones(const VolumeRegion& region, int rings) {
+  const SolidPool& pool = *region.pool;
+  const auto corners = [&](Index s) { return pool.nodes()[s].first(at(region.corners)); };
+  std::map<Index, std::vector<Index>> around;
+  for (Index s = 0; s < pool.stencils(); ++s) {
+    for (const Index n : corners(s)) around[n].push_back(s);
+  }
+  VolumeZones out;
+  std::set<std::vector<Index>> seen;
+  for (const auto& [center, first] : around) {
+    std::set<Index> zone(first.begin(), first.end());
+    std::vector<Index> outermost = first;
+    for (int k = 1; k < rings; ++k) {
+      std::vector<Index> next;
+      for (const Index s : outermost) {
+        for (const Index n : corners(s)) {
+          for (const Index t : around[n]) {
+            if (zone.insert(t).second) next.push_back(t);
+          }
+        }
+      }
+      outermost = std::move(next);
+    }
+    std::vector<Index> sorted(zone.begin(), zone.end());
+    if (!seen.insert(sorted).second) continue;
+    out.stencils.push_back(std::move(sorted));
+    out.compliance.push_back(1);
+  }
+  return out;
+}
+
+std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double tau,
+                                           std::vector<Index>* corner_nodes) {
+  auto rows = std::make_shared<VolumeRowPool>(region.name);
+  rows->stencil_pool = region.stencil_pool;
+  const SolidPool& pool = *region.pool;
+  const SolidData& data = pool.data();
+  const std::size_t corners = static_cast<std::size_t>(region.corners);
+  // Rows in ascending order of their nodes, whatever the order of the cells.
+  std::vector<Index> nodes;
+  for (Index s = 0; s < pool.stencils(); ++s) {
+    for (std::size_t k = 0; k < corners; ++k) nodes.push_back(pool.nodes()[s][k]);
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  const auto row_of = [&](Index node) {
+    return static_cast<Index>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
+  };
+  std::vector<std::vector<std::pair<Index, double>>> terms(nodes.size());
+  std::vector<double> volume(nodes.size(), 0), metric(nodes.size(), 0);
+  std::map<std::pair<Index, Index>, double> compliance;
+  const bool per_corner = data.functions == region.corners;
+  for (Index s = 0; s < pool.stencils(); ++s) {
+    const double V = pool.volume(s), mu = region.shear_modulus_of(s), bulk = region.inverse_bulk_of(s);
+    Index row[8];
+    double share[8] = {};  // integral of N_k
+    for (std::size_t k = 0; k < corners; ++k) {
+      row[k] = row_of(pool.nodes()[s][k]);
+      for (std::size_t l = 0; l < corners; ++l)
+        share[k] += pressure_mass(data, s, V, static_cast<int>(k), static_cast<int>(l));
+    }
+    for (std::size_t k = 0; k < corners; ++k) {
+      const int kk = static_cast<int>(k);
+      terms[at(row[k])].push_back(per_corner ? std::pair(s * data.functions + kk, 1.0)
+                                             : std::pair(s, 1.0 / static_cast<double>(corners)));
+      for (std::size_t l = 0; l < corners; ++l) {
+        const double mass = pressure_mass(data, s, V, kk, static_cast<int>(l));
+        volume[at(row[k])] += mass;
+        metric[at(row[k])] += mass / mu;
+        if (row[k] < row[l]) continue;
+        double c = mass * bulk;
+        if (tau > 0) c += tau / mu * (mass - share[k] * share[l] / V);
+        if (c != 0) compliance[{row[k], row[l]}] += c;
+      }
+    }
+  }
+  for (std::size_t r = 0; r < nodes.size(); ++r) {
+    for (const auto& [function, weight] : terms[r]) {
+      rows->map.item.push_back(function);
+      rows->weight.push_back(weight);
+    }
+    finish_row(*rows, volume[r], metric[r]);
+  }
+  for (const auto& [ends, value] : compliance) rows->compliance.push_back({ends.first, ends.second, value});
+  if (corner_nodes) *corner_nodes = nodes;
+  return rows;
+}
+
+}  // namespace isochor

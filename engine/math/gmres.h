@@ -1,0 +1,58 @@
+// The generalized minimal residual method on few vectors, each preconditioned as it comes (Saad 1993), for
+// systems next to one whose factors are at hand. It takes all its memory once and does not restart.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "engine/base/base.h"
+
+namespace isochor {
+
+class Gmres {
+ public:
+  Gmres(std::size_t size, int most);
+
+  // Of one solve: residual of x = 0, in the Euclidean norm, and what is left of it.
+  double start_norm() const { return start_; }
+  double left() const { return left_; }
+
+  // From x = 0 until the residual is `tolerance` of the right-hand side, or for as many directions as there
+  // is room for. apply(v, w): w = A v; precondition(v): v := M^-1 v in place, false when it cannot. Returns
+  // the number of directions, and -1 when there was no preconditioner or a number was not finite.
+  template <class Apply, class Precondition>
+  int solve(std::span<const double> b, std::span<double> x, double tolerance, const Apply& apply,
+            const Precondition& precondition) {
+    begin(b);
+    int k = 0;
+    while (k < most_ && left_ > tolerance * start_) {
+      const std::span<double> z = direction(k);
+      const auto v = basis(k);
+      std::copy(v.begin(), v.end(), z.begin());
+      if (!precondition(z)) return -1;
+      apply(std::span<const double>(z), basis(k + 1));
+      if (!extend(k)) return -1;
+      ++k;
+      if (exhausted_) break;
+    }
+    combine(k, x);
+    return k;
+  }
+
+ private:
+  void begin(std::span<const double> b);
+  bool extend(int k);
+  void combine(int k, std::span<double> x);
+  std::span<double> basis(int k) { return std::span(basis_).subspan(at(k) * size_, size_); }
+  std::span<double> direction(int k) { return std::span(direction_).subspan(at(k) * size_, size_); }
+  double& h(int row, int column) { return hessenberg_[at(column) * (at(most_) + 1) + at(row)]; }
+
+  std::size_t size_;
+  int most_;
+  double start_ = 0, left_ = 0;
+  bool exhausted_ = false;  // the space does not grow any more: what is there is exact
+  std::vector<double> basis_, direction_, hessenberg_, cosine_, sine_, right_;
+};
+
+}  // namespace isochor

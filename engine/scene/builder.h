@@ -1,0 +1,244 @@
+// What an effect sees while a scene is compiled, and what it must provide. Extension header.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/elements/material_model.h"
+#include "engine/elements/reference_element.h"
+#include "engine/system/state.h"
+#include "engine/system/system.h"
+#include "isochor/effects.h"
+#include "isochor/world.h"
+
+namespace isochor {
+
+class Builder;
+
+// An amount over time: the curve of its definition until a host sets a value, which then ramps in over one
+// increment.
+class Amount {
+ public:
+  explicit Amount(Curve curve) : curve_(std::move(curve)) {}
+  double value(double t) const;
+  void set(double value) { pending_ = value; }
+  // Announces the increment [t0, t1]; a pending value ramps over it.
+  void begin(double t0, double t1);
+  // Whether a host has set it.
+  bool set_by_host() const { return held_ || pending_; }
+  void save(std::vector<double>& out) const;
+  bool load(std::span<const double>& in);
+  // Takes the numbers of one amount off a list; false where they are none.
+  static bool take(std::span<const double>& in);
+
+ private:
+  Curve curve_;
+  bool held_ = false;  // from_/to_ replace the curve
+  double from_ = 0, to_ = 0, t0_ = 0, t1_ = 0;
+  std::optional<double> pending_;
+};
+
+// What gauges may read.
+struct GaugeContext {
+  const System& system;
+  const State& state;
+};
+
+// What presses on and rubs along the surfaces of bodies, by scene node.
+struct SurfaceForces {
+  std::vector<double> normal;    // [N]
+  std::vector<Vec3> tangential;  // on the body [N]
+  std::vector<double> area;      // at rest, that the node stands for [m^2]; 0: the effect is not there
+};
+
+// The live part of an effect: what a host can set and read.
+class EffectInstance {
+ public:
+  virtual ~EffectInstance() = default;
+  virtual Amount* amount() { return nullptr; }
+  virtual void gauges(const GaugeContext& context, std::vector<Gauge>& out) const {
+    (void)context;
+    (void)out;
+  }
+  // Pressure multipliers that live at nodes, by scene node [Pa]; others are left as they are.
+  virtual void node_multipliers(const GaugeContext& context, std::span<double> pressure) const {
+    (void)context;
+    (void)pressure;
+  }
+  // Adds the forces that it exerts on surfaces, and fills in the areas of their nodes; false: it is of no
+  // such kind.
+  virtual bool surface_forces(const GaugeContext& context, SurfaceForces& forces) const {
+    (void)context;
+    (void)forces;
+    return false;
+  }
+};
+
+// The description of an effect, as a host adds it.
+class EffectSource {
+ public:
+  virtual ~EffectSource() = default;
+  virtual const std::string& name() const = 0;
+  // Everything that its definition says: a saved state belongs to one definition.
+  virtual void describe(Fingerprint& f) const = 0;
+  // Parameters alone, before the scene is known.
+  virtual Result<void> check() const { return {}; }
+  // First pass: what it needs from bodies.
+  virtual Result<void> declare(Builder& builder) const {
+    (void)builder;
+    return {};
+  }
+  // Second pass: pools, rows, supports, loads.
+  virtual Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const = 0;
+};
+
+struct RegionData {
+  std::string name;
+  MaterialPtr material;
+  double density = 0;
+  std::vector<Index> cells;
+  bool bulk_claimed = false;
+  // Pools that were built for it.
+  std::shared_ptr<const Material> energy;  // of elastic_pool
+  Index elastic_pool = -1;
+  std::array<Index, 2> volume_pool{-1, -1};  // by VolumeStrain
+  std::array<bool, 2> volume_wanted{};
+  std::vector<std::uint8_t> guarded;  // by cell: 1 where the element guard acts; empty: nowhere
+};
+
+// Volume functions over cells of several regions, beside those of each region.
+struct SpanningVolume {
+  Index pool = -1;
+  VolumeStrain strain = VolumeStrain::linear;
+  std::vector<Index> stencil_of_cell;  // -1 for cells that it does not hold
+};
+
+struct BodyData {
+  std::string name;
+  Mesh mesh;
+  Element element = Element::tet4;
+  const ReferenceElement* reference = nullptr;
+  Index first_node = 0;
+  std::vector<RegionData> regions;
+  std::vector<SpanningVolume> spanning;
+  double guard_threshold = 0.5;
+  std::optional<double> guard_stiffness;
+  std::vector<Index> global_cells;  // mesh.cells with scene node numbers
+};
+
+// A displacement over time, shared by the nodes it moves.
+class Motion {
+ public:
+  virtual ~Motion() = default;
+  virtual Vec3 displacement(double t, const Vec3& rest) const = 0;  // [m]
+  virtual bool never_moves() const { return false; }
+  // Angle that it turns from t0 to t1 [rad], all the way round where it goes round.
+  virtual double turn(double t0, double t1) const {
+    (void)t0;
+    (void)t1;
+    return 0;
+  }
+};
+
+// A direction in which an effect holds a node; the directions of one node are orthonormal.
+struct HeldDirection {
+  Index node = -1;
+  Vec3 direction{};
+};
+
+class Builder {
+ public:
+  // Bodies first.
+  Result<void> add_body(const BodyDef& def);
+  Index body_count() const { return static_cast<Index>(bodies_.size()); }
+  const BodyData& body(BodyId id) const { return bodies_[static_cast<std::size_t>(id)]; }
+  bool has_body(BodyId id) const {
+    return static_cast<Index>(id) >= 0 && static_cast<Index>(id) < body_count();
+  }
+  std::span<const Vec3> rest() const { return parts_.rest; }
+  double length() const;  // diagonal of the scene's box [m]
+
+  // Declarations about a region (index into body.regions).
+  void want_volume(BodyId id, std::size_t region, VolumeStrain strain) {
+    bodies_[static_cast<std::size_t>(id)].regions[region].volume_wanted[static_cast<std::size_t>(strain)] =
+        true;
+  }
+  // Says that rows carry the bulk modulus of the region; false when other rows already do.
+  bool claim_bulk(BodyId id, std::size_t region);
+
+  // After the declarations: elastic energies and volume functions of all bodies.
+  Result<void> build_solids();
+  const SolidPool& solid(Index pool) const {
+    return static_cast<const SolidPool&>(*parts_.stencil_pools[at(pool)]);
+  }
+
+  // Names to indices; the message names what exists.
+  Result<std::vector<std::size_t>> regions(BodyId id, std::span<const std::string> names,
+                                           const std::string& who) const;
+  Result<std::vector<Index>> select(const Selection& selection,
+                                    const std::string& who) const;  // scene nodes, sorted
+  // Faces of named surfaces, in scene node numbers, nodes_per_face each.
+  Result<std::vector<Index>> faces(BodyId id, std::span<const std::string> surfaces,
+                                   const std::string& who) const;
+
+  Index add_stencils(std::shared_ptr<const StencilPool> pool);
+  Index add_rows(std::shared_ptr<const RowPool> pool);
+  void add_load(std::shared_ptr<const LoadPool> load) { parts_.loads.push_back(std::move(load)); }
+  Result<void> prescribe(Index node, const Vec3& direction, std::shared_ptr<const Motion> motion,
+                         const std::string& who);
+  // Number of directions in which a node is given so far.
+  int given_directions(Index node) const;
+  std::vector<Vec3> directions_given(Index node) const;  // unit vectors
+  // What each effect holds; directions that depend on earlier ones belong to the earlier effect.
+  std::vector<std::vector<HeldDirection>> held_directions(std::size_t effects) const;
+  void set_owner(Index effect) { owner_ = effect; }
+  // What effects share while they are built, made by the first that asks: chambers that are connected live in
+  // one pool.
+  template <class T>
+  std::shared_ptr<T> shared(const std::string& key) {
+    auto& slot = shared_[key];
+    if (!slot) slot = std::make_shared<T>();
+    return std::static_pointer_cast<T>(slot);
+  }
+  // Before build_solids(): inertia by the consistent mass matrix.
+  void use_consistent_mass() { consistent_mass_ = true; }
+  // A node that belongs to no body, with its mass [kg]; for effects with unknowns of their own.
+  Index add_point(const Vec3& rest, double mass);
+  // Whether the scene is for statics, where nothing has inertia.
+  bool quasi_static() const { return quasi_static_; }
+  void set_quasi_static(bool on) { quasi_static_ = on; }
+  void warn(std::string text) { warnings_.push_back(std::move(text)); }
+  // What the meshes say of their units, to end a message with; empty where the sizes are plausible.
+  const std::string& doubtful_units() const { return doubtful_units_; }
+
+  // Merges supports, checks the scene and hands the parts over.
+  Result<SystemParts> finish(bool needs_anchors);
+  std::vector<std::string>& warnings() { return warnings_; }
+  std::vector<BodyData>& bodies() { return bodies_; }
+
+ private:
+  Result<void> add_regions(const BodyDef& def, BodyData& body) const;
+  Result<void> build_region(BodyData& body, RegionData& region);
+
+  std::vector<BodyData> bodies_;
+  SystemParts parts_;
+  struct Given {
+    Vec3 direction;
+    std::shared_ptr<const Motion> motion;
+    std::string who;
+    Index owner;
+  };
+  friend class SupportPrescriber;
+  std::vector<std::vector<Given>> given_;
+  std::vector<std::string> warnings_;
+  std::string doubtful_units_;
+  std::map<std::string, std::shared_ptr<void>> shared_;
+  Index owner_ = -1;  // effect being built
+  bool consistent_mass_ = false;
+  bool quasi_static_ = false;
+};
+
+}  // namespace isochor

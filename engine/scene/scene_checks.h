@@ -1,0 +1,25 @@
+// What makes a scene unsolvable before the first step, each with its name and remedy.
+#pragma once
+
+#include <map>
+
+#include "engine/scene/builder.h"
+#include "engine/scene/supports.h"
+
+namespace isochor {
+
+struct SceneFacts {
+  const std::vector<BodyData>& bodies;
+  const SystemParts& parts;
+  const SupportPrescriber& supports;
+  std::map<std::string, std::vector<Index>> held_by;  // nodes that each support holds, in any direction
+};
+
+// Statics: every connected part must be held against its six rigid motions.
+Result<void> check_anchored(const SceneFacts& facts);
+
+// Hard rows that repeat each other, outnumber the displacements, or enclose a body whose boundary cannot
+// move.
+Result<void> check_hard_rows(const SceneFacts& facts);
+
+}  // namespace isochor

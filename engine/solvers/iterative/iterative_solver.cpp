@@ -1,0 +1,289 @@
+#include "engine/solvers/iterative/iterative_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+
+#include "engine/solvers/pattern_check.h"
+
+namespace isochor {
+namespace {
+
+constexpr Index wide_row_nodes = 400;       // a row over more is measured
+constexpr std::size_t most_wide_rows = 64;  // more of them are left at 1 + C
+
+double max_norm(std::span<const double> v) {
+  double largest = 0, poison = 0;
+  for (const double x : v) {
+    largest = std::max(largest, std::abs(x));
+    poison += x * 0.0;
+  }
+  return largest + poison;
+}
+
+}  // namespace
+
+IterativeSolver::IterativeSolver(const IterativeOptions& options)
+    : options_(options), multigrid_(options.multigrid) {}
+
+FactorReport IterativeSolver::analyze(const SymmetricPattern& pattern) {
+  FactorReport report;
+  factored_ = false;
+  pattern_ = nullptr;
+  try {
+    report.message = check(pattern);
+    if (!report.message.empty()) {
+      report.status = FactorStatus::failed;
+      return report;
+    }
+    matrix_.analyze(pattern, geometry_);
+    multigrid_.analyze(matrix_.take_stiffness_pattern());
+    const std::size_t n = matrix_.size(), rows = at(matrix_.rows());
+    for (auto* v : {&b_, &x_, &residual_, &v0_, &v1_, &v2_, &z1_, &z2_, &w0_, &w1_, &w2_}) v->assign(n, 0);
+    dot_.allocate(n);
+    modes_.assign(3 * at(matrix_.nodes()) * 6, 0);
+    row_inverse_.assign(rows, 1);
+    row_sum_.assign(at(pattern.size), 0);
+    wide_rows_.clear();
+    for (Index r = 0; r < matrix_.rows() && wide_rows_.size() < most_wide_rows; ++r) {
+      if (matrix_.row_nodes(r) > wide_row_nodes) wide_rows_.push_back(r);
+    }
+    pattern_ = &pattern;
+  } catch (const std::bad_alloc&) {
+    report.status = FactorStatus::out_of_memory;
+  } catch (...) {
+    report.status = FactorStatus::failed;
+  }
+  return report;
+}
+
+// Rigid motions of the nodes in scaled unknowns; without geometry, translations along the unknowns.
+void IterativeSolver::fill_modes() {
+  std::fill(modes_.begin(), modes_.end(), 0.0);
+  const auto place = matrix_.place();
+  const Index displacements = 3 * matrix_.nodes();
+  if (geometry_.empty()) {
+    for (const Index p : place) {
+      if (p < displacements) modes_[6 * at(p) + at(p % 3)] = 1;
+    }
+    return;
+  }
+  Vec3 center{}, low = geometry_.front().position, high = low;
+  for (const UnknownGeometry& g : geometry_) {
+    center += g.position;
+    for (int i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], g.position[i]);
+      high[i] = std::max(high[i], g.position[i]);
+    }
+  }
+  center = (1.0 / static_cast<double>(geometry_.size())) * center;
+  const Vec3 extent = high - low;
+  const double length = std::max(std::sqrt(isochor::dot(extent, extent)), 1e-300);
+  for (std::size_t u = 0; u < geometry_.size(); ++u) {
+    const Vec3& d = geometry_[u].direction;
+    const Vec3 p = (1 / length) * (geometry_[u].position - center);
+    const double weight = scale_.empty() ? 1 : 1 / scale_[u];
+    double* const row = modes_.data() + 6 * at(place[u]);
+    const Vec3 turn{p.y * d.z - p.z * d.y, p.z * d.x - p.x * d.z, p.x * d.y - p.y * d.x};
+    for (int i = 0; i < 3; ++i) {
+      row[i] = weight * d[i];
+      row[3 + i] = weight * turn[i];
+    }
+  }
+}
+
+FactorReport IterativeSolver::factor(std::span<const double> values) {
+  FactorReport report;
+  factored_ = false;
+  try {
+    if (pattern_ == nullptr || values.size() != static_cast<std::size_t>(pattern_->nonzeros())) {
+      report.status = FactorStatus::failed;
+      report.message = pattern_ == nullptr ? "factor was called without a successful analyze"
+                                           : "the number of values is not that of the analysed pattern";
+      return report;
+    }
+    norm_ = matrix_norm(*pattern_, values, row_sum_);
+    if (!std::isfinite(norm_)) {
+      report.status = FactorStatus::not_finite;
+      report.message = "the matrix has a value that is not finite, or too large to sum";
+      return report;
+    }
+    if (norm_ == 0 && pattern_->size > 0) {
+      report.status = FactorStatus::singular;
+      report.message = "the matrix is zero";
+      return report;
+    }
+    matrix_.set_values(values, multigrid_.matrix());
+    fill_modes();
+    caution_ = 1;
+    if (!build()) {
+      report.status = FactorStatus::failed;
+      report.message = "no definite preconditioner was found for the stiffness";
+      return report;
+    }
+  } catch (const std::bad_alloc&) {
+    report.status = FactorStatus::out_of_memory;
+    return report;
+  }
+  report.factor_nonzeros = multigrid_.nonzeros();
+  factored_ = true;
+  return report;
+}
+
+bool IterativeSolver::build() {
+  if (matrix_.nodes() > 0) multigrid_.factor(loop_, modes_, caution_);
+  for (Index r = 0; r < matrix_.rows(); ++r) {
+    row_inverse_[at(r)] = 1 / (1 + std::abs(matrix_.compliance_diagonal(r)));
+  }
+  measure_wide_rows();
+  return std::all_of(row_inverse_.begin(), row_inverse_.end(),
+                     [](double v) { return std::isfinite(v) && v > 0; });
+}
+
+// Row entries of the Schur complement where they may be anything: g^T B g with the multigrid cycle B.
+void IterativeSolver::measure_wide_rows() {
+  const std::size_t n = 3 * at(matrix_.nodes());
+  for (const Index r : wide_rows_) {
+    const auto g = std::span(v0_).first(n), z = std::span(v1_).first(n);
+    matrix_.row_gradient(r, g);
+    multigrid_.apply(loop_, g, z);
+    const double schur = dot(g, z) + std::abs(matrix_.compliance_diagonal(r));
+    if (schur > 0 && std::isfinite(schur)) row_inverse_[at(r)] = 1 / schur;
+  }
+}
+
+void IterativeSolver::apply(std::span<const double> b, std::span<double> x) {
+  const std::size_t n = 3 * at(matrix_.nodes());
+  if (n > 0) multigrid_.apply(loop_, b.first(n), x.first(n));
+  for (std::size_t r = 0; r < row_inverse_.size(); ++r) x[n + r] = row_inverse_[r] * b[n + r];
+}
+
+void IterativeSolver::precondition(std::span<const double> x, std::span<double> y) {
+  const auto place = matrix_.place();
+  std::fill(b_.begin(), b_.end(), 0.0);
+  for (std::size_t u = 0; u < place.size(); ++u) b_[at(place[u])] = x[u];
+  apply(b_, x_);
+  for (std::size_t u = 0; u < place.size(); ++u) y[u] = x_[at(place[u])];
+}
+
+// residual_ = b - A x; its norm in the preconditioner.
+double IterativeSolver::norm_of_residual(std::span<const double> b, std::span<const double> x) {
+  matrix_.multiply(loop_, multigrid_.matrix(), x, residual_);
+  for (std::size_t i = 0; i < b.size(); ++i) residual_[i] = b[i] - residual_[i];
+  apply(residual_, z1_);
+  const double square = dot(residual_, z1_);
+  return square >= 0 ? std::sqrt(square) : -1;
+}
+
+// Paige & Saunders 1975 with a preconditioner, from residual_ and z1_ = B residual_. False when the
+// preconditioner turns out not to be definite.
+bool IterativeSolver::minimize(std::span<const double> b, std::span<double> x, double target,
+                               int& iterations) {
+  (void)b;
+  const std::size_t n = x.size();
+  const auto size = static_cast<Index>(n);
+  constexpr Index grain = 8192;
+  for (auto* v : {&v0_, &w0_, &w1_}) std::fill(v->begin(), v->end(), 0.0);
+  std::copy(residual_.begin(), residual_.end(), v1_.begin());
+  const double square = dot(v1_, z1_);
+  if (!(square >= 0)) return false;
+  double gamma0 = 1, gamma1 = std::sqrt(square), eta = gamma1;
+  double s0 = 0, s1 = 0, c0 = 1, c1 = 1;
+  for (; iterations < options_.max_iterations && gamma1 > 0 && std::abs(eta) > target; ++iterations) {
+    loop_(size, grain, [&](Index begin, Index end) {
+      for (Index i = begin; i < end; ++i) z1_[at(i)] /= gamma1;
+    });
+    if (interrupted()) return true;
+    matrix_.multiply(loop_, multigrid_.matrix(), z1_, v2_);
+    const double delta = dot(v2_, z1_);
+    loop_(size, grain, [&](Index begin, Index end) {
+      for (Index k = begin; k < end; ++k) {
+        const std::size_t i = at(k);
+        v2_[i] -= delta / gamma1 * v1_[i] + gamma1 / gamma0 * v0_[i];
+      }
+    });
+    apply(v2_, z2_);
+    const double next = dot(v2_, z2_);
+    if (!std::isfinite(next) || next < -1e-12 * norm_) return false;
+    const double gamma2 = std::sqrt(std::max(next, 0.0));
+    const double a0 = c1 * delta - c0 * s1 * gamma1, a1 = std::sqrt(a0 * a0 + gamma2 * gamma2);
+    const double a2 = s1 * delta + c0 * c1 * gamma1, a3 = s0 * gamma1;
+    if (!(a1 > 0)) break;  // the right-hand side has a part that the matrix does not reach
+    const double c2 = a0 / a1, s2 = gamma2 / a1, step = c2 * eta;
+    loop_(size, grain, [&](Index begin, Index end) {
+      for (Index k = begin; k < end; ++k) {
+        const std::size_t i = at(k);
+        w2_[i] = (z1_[i] - a3 * w0_[i] - a2 * w1_[i]) / a1;
+        x[i] += step * w2_[i];
+      }
+    });
+    eta *= -s2;
+    std::swap(v0_, v1_);
+    std::swap(v1_, v2_);
+    std::swap(w0_, w1_);
+    std::swap(w1_, w2_);
+    std::swap(z1_, z2_);
+    gamma0 = gamma1;
+    gamma1 = gamma2;
+    s0 = s1;
+    s1 = s2;
+    c0 = c1;
+    c1 = c2;
+  }
+  return true;
+}
+
+SolveReport IterativeSolver::solve(std::span<const double> right_hand_side, std::span<double> solution) {
+  SolveReport report;
+  report.residual = std::numeric_limits<double>::infinity();
+  std::fill(solution.begin(), solution.end(), 0.0);
+  const std::size_t n = pattern_ == nullptr ? 0 : at(pattern_->size);
+  if (!factored_ || right_hand_side.size() != n || solution.size() != n) return report;
+  const double b_norm = max_norm(right_hand_side);
+  if (!std::isfinite(b_norm)) return report;
+  if (b_norm == 0) return {true, 0, 0, 0};
+  const auto place = matrix_.place();
+  std::fill(b_.begin(), b_.end(), 0.0);
+  for (std::size_t u = 0; u < n; ++u) b_[at(place[u])] = right_hand_side[u];
+  std::fill(x_.begin(), x_.end(), 0.0);
+  double first = norm_of_residual(b_, x_), now = first;
+  // The recurrence of the residual drifts from the residual itself: a restart or two make up for that.
+  constexpr int most_restarts = 4;
+  for (int restart = 0; restart < most_restarts && !interrupted(); ++restart) {
+    const double target = options_.tolerance * first;
+    if (now >= 0 && minimize(b_, x_, 0.9 * target, report.iterations)) {
+      const double after = norm_of_residual(b_, x_);
+      const bool stalled = !(after < 0.5 * now);
+      now = after;
+      if (now <= target || stalled || report.iterations >= options_.max_iterations) break;
+      continue;
+    }
+    // An estimate of an eigenvalue was too small: again with more caution.
+    caution_ *= 1.5;
+    if (!build()) break;
+    std::fill(x_.begin(), x_.end(), 0.0);
+    first = now = norm_of_residual(b_, x_);
+  }
+  const double x_norm = max_norm(x_);
+  if (std::isfinite(x_norm) && now >= 0) {
+    matrix_.multiply(loop_, multigrid_.matrix(), x_, residual_);
+    for (std::size_t i = 0; i < b_.size(); ++i) residual_[i] = b_[i] - residual_[i];
+    report.residual = max_norm(residual_) / (norm_ * x_norm + b_norm);
+    for (std::size_t u = 0; u < n; ++u) solution[u] = x_[at(place[u])];
+    // Rounding may keep the last digits of an ill-conditioned system out of reach.
+    report.ok = now <= options_.tolerance * first || now <= 1e-6 * first;
+  }
+  return report;
+}
+
+std::size_t IterativeSolver::bytes() const {
+  return matrix_.bytes() + multigrid_.bytes() + 11 * b_.size() * sizeof(double) +
+         modes_.size() * sizeof(double);
+}
+
+std::unique_ptr<LinearSolver> make_iterative_solver(const IterativeOptions& options) {
+  return std::make_unique<IterativeSolver>(options);
+}
+
+}  // namespace isochor

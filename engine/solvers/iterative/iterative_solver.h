@@ -1,0 +1,70 @@
+// Preconditioned minimal residuals on the saddle point: multigrid on the displacements, the row metric on the
+// multipliers. Memory is linear in the mesh.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "engine/solvers/iterative/multigrid.h"
+#include "engine/solvers/linear_solver.h"
+#include "engine/solvers/saddle_matrix.h"
+
+namespace isochor {
+
+struct IterativeOptions {
+  double tolerance = 1e-8;    // residual against the right-hand side, in the norm of the preconditioner
+  int max_iterations = 1000;  // of one solve, restarts included
+  MultigridOptions multigrid;
+};
+
+// Rows are expected in units of their metric: then the Schur complement G K^-1 G^T + C is close to 1 + C for
+// rows that lie in a few elements (the mass matrix of the pressure, for volumes). Rows over many nodes have
+// no such bound, but are few: their diagonal entry is measured.
+class IterativeSolver final : public LinearSolver {
+ public:
+  explicit IterativeSolver(const IterativeOptions& options = {});
+
+  std::string_view name() const override { return "iterative"; }
+  void set_parallel(const Parallel& parallel) override { loop_ = RowLoop(&parallel); }
+  bool wants_geometry() const override { return true; }
+  void set_geometry(std::vector<UnknownGeometry> geometry) override { geometry_ = std::move(geometry); }
+  void set_scale(std::span<const double> scale) override { scale_ = scale; }
+
+  FactorReport analyze(const SymmetricPattern& pattern) override;
+  FactorReport factor(std::span<const double> values) override;
+  SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) override;
+
+  // y = preconditioner times x, in the order of the pattern.
+  void precondition(std::span<const double> x, std::span<double> y);
+  const Multigrid& multigrid() const { return multigrid_; }
+  std::size_t bytes() const;
+
+ private:
+  void fill_modes();
+  bool build();
+  void measure_wide_rows();
+  void apply(std::span<const double> b, std::span<double> x);
+  double norm_of_residual(std::span<const double> b, std::span<const double> x);
+  bool minimize(std::span<const double> b, std::span<double> x, double target, int& iterations);
+  double dot(std::span<const double> a, std::span<const double> b) { return dot_(loop_, a, b); }
+
+  IterativeOptions options_;
+  RowLoop loop_;
+  BlockedDot dot_;
+  std::vector<UnknownGeometry> geometry_;
+  std::span<const double> scale_;
+  const SymmetricPattern* pattern_ = nullptr;
+  SaddleMatrix matrix_;
+  Multigrid multigrid_;
+  bool factored_ = false;
+  double norm_ = 0, caution_ = 1;
+  std::vector<double> modes_, row_inverse_;
+  std::vector<Index> wide_rows_;
+  std::vector<double> b_, x_, residual_, row_sum_;
+  // Lanczos vectors (three generations), preconditioned ones and directions.
+  std::vector<double> v0_, v1_, v2_, z1_, z2_, w0_, w1_, w2_;
+};
+
+std::unique_ptr<LinearSolver> make_iterative_solver(const IterativeOptions& options = {});
+
+}  // namespace isochor

@@ -1,0 +1,26 @@
+// What survives a step. A checkpoint holds the amounts that a host has set and the reactions besides.
+#pragma once
+
+#include "engine/base/base.h"
+
+namespace isochor {
+
+struct State {
+  double t = 0;                // [s]; the load factor in statics
+  std::vector<Vec3> x;         // positions [m]
+  std::vector<Vec3> v;         // velocities [m/s]
+  std::vector<double> lambda;  // multipliers of compliant rows, energy per unit of the row
+  std::vector<double> extra;   // what schemes and effects keep between steps
+
+  std::uint64_t hash() const {
+    Hash h;
+    h.add(&t, sizeof t);
+    h.add(std::span<const Vec3>(x));
+    h.add(std::span<const Vec3>(v));
+    h.add(std::span<const double>(lambda));
+    h.add(std::span<const double>(extra));
+    return h.value();
+  }
+};
+
+}  // namespace isochor

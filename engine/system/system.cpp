@@ -1,0 +1,561 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "engine/solvers/ordering.h"
+#include "engine/system/row_treatment.h"
+
+namespace isochor {
+
+namespace {
+
+// One contribution to a destination that is named by two indices.
+struct Contribution {
+  std::uint64_t key = 0;  // (first << 32) | second
+  std::int64_t source = 0;
+  double weight = 1;
+};
+
+std::uint64_t key_of(Index first, Index second) {
+  return (static_cast<std::uint64_t>(first) << 32) | static_cast<std::uint32_t>(second);
+}
+
+std::uint64_t destination(const Contribution& c) {
+  return c.key;
+}
+std::uint64_t destination(std::uint64_t key) {
+  return key;
+}
+
+// By destination, in linear time and stable: contributions to one stay as they came, and this order is what
+// makes sums independent of the thread count.
+template <class T>
+void sort_by_destination(std::vector<T>& items) {
+  std::array<std::uint64_t, 2> largest{};
+  for (const T& item : items) {
+    largest[0] = std::max(largest[0], destination(item) & 0xffffffffu);
+    largest[1] = std::max(largest[1], destination(item) >> 32);
+  }
+  std::vector<T> sorted(items.size());
+  for (const int half : {0, 1}) {
+    if (largest[static_cast<std::size_t>(half)] == 0) continue;
+    const auto bucket = [half](const T& item) { return (destination(item) >> (32 * half)) & 0xffffffffu; };
+    std::vector<std::size_t> next(largest[static_cast<std::size_t>(half)] + 2, 0);
+    for (const T& item : items) ++next[bucket(item) + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    for (const T& item : items) sorted[next[bucket(item)]++] = item;
+    items.swap(sorted);
+  }
+}
+
+void gather_by_key(std::vector<Contribution>& c, bool weighted, Gather& gather,
+                   std::vector<std::array<Index, 2>>& ends) {
+  sort_by_destination(c);
+  gather.source.reserve(c.size());
+  if (weighted) gather.weight.reserve(c.size());
+  for (std::size_t i = 0; i < c.size(); ++i) {
+    if (i == 0 || c[i].key != c[i - 1].key) {
+      if (i != 0) gather.offset.push_back(static_cast<std::int64_t>(i));
+      ends.push_back({static_cast<Index>(c[i].key >> 32), static_cast<Index>(c[i].key & 0xffffffffu)});
+    }
+    gather.source.push_back(c[i].source);
+    if (weighted) gather.weight.push_back(c[i].weight);
+  }
+  if (!c.empty()) gather.offset.push_back(static_cast<std::int64_t>(c.size()));
+}
+
+}  // namespace
+
+class SystemCompiler {
+ public:
+  explicit SystemCompiler(SystemParts parts) : s_(std::make_shared<System>()) {
+    s_->parts_ = std::move(parts);
+  }
+
+  Result<std::shared_ptr<const System>> run() {
+    measure();
+    place_pools();
+    number_rows();
+    if (auto r = number_unknowns(); !r) return Error{r.error()};
+    gather_rows();
+    gather_residual();
+    gather_blocks();
+    gather_jacobian();
+    collect_compliance();
+    collect_bounds_and_memory();
+    if (auto r = RowTreatments(*s_).sort(); !r) return Error{r.error()};
+    build_kkt();
+    locate_entries();
+    group_unknowns();
+    find_ordering_base();
+    hash_layout();
+    return std::shared_ptr<const System>(s_);
+  }
+
+ private:
+  void measure() {
+    Vec3 lo{}, hi{};
+    bool first = true;
+    for (const Vec3& x : s_->parts_.rest) {
+      for (int i = 0; i < 3; ++i) {
+        lo[i] = first ? x[i] : std::min(lo[i], x[i]);
+        hi[i] = first ? x[i] : std::max(hi[i], x[i]);
+      }
+      first = false;
+    }
+    const Vec3 d = hi - lo;
+    s_->length_ = std::sqrt(dot(d, d));
+  }
+
+  void place_pools() {
+    PoolPlace at_place;
+    for (const auto& pool : s_->parts_.stencil_pools) {
+      s_->places_.push_back(at_place);
+      const std::int64_t slots = static_cast<std::int64_t>(pool->nodes().item.size());
+      at_place.energy += pool->stencils();
+      at_place.function += static_cast<std::int64_t>(pool->stencils()) * pool->functions();
+      at_place.gradient += slots;
+      at_place.jacobian += slots * pool->functions();
+      if (pool->has_hessian()) at_place.hessian += pool->hessian_offset().back();
+    }
+    s_->totals_ = at_place;
+  }
+
+  void number_rows() {
+    for (const auto& pool : s_->parts_.row_pools) {
+      Index& count = pool->law == RowLaw::compliant ? s_->rows_ : s_->prescribed_rows_;
+      s_->first_row_.push_back(count);
+      count += pool->rows();
+      if (pool->law == RowLaw::compliant) {
+        s_->row_metric_.insert(s_->row_metric_.end(), pool->metric.begin(), pool->metric.end());
+        s_->row_measure_.insert(s_->row_measure_.end(), pool->measure.begin(), pool->measure.end());
+      }
+    }
+  }
+
+  Result<void> number_unknowns() {
+    const Index n = s_->nodes();
+    s_->basis_of_.assign(at(n), -1);
+    for (const auto& p : s_->parts_.prescribers) {
+      for (const PrescribedNode& c : p->nodes) {
+        if (s_->basis_of_[at(c.node)] >= 0) {
+          return Error{std::string(p->name()) + ": node " + std::to_string(c.node) +
+                       " is given by two prescribers of one scene; merge them first"};
+        }
+        s_->basis_of_[at(c.node)] = static_cast<Index>(s_->bases_.size());
+        s_->bases_.push_back(free_basis(c));
+      }
+    }
+    s_->first_unknown_.assign(1, 0);
+    for (Index i = 0; i < n; ++i) {
+      const Index b = s_->basis_of_[at(i)];
+      s_->first_unknown_.push_back(s_->first_unknown_.back() + (b < 0 ? 3 : s_->bases_[at(b)].count));
+    }
+    return {};
+  }
+
+  // Completes the given directions to an orthonormal frame; axis-aligned ones stay exactly axis-aligned.
+  static FreeBasis free_basis(const PrescribedNode& c) {
+    std::array<Vec3, 3> frame{};
+    int given = c.directions;
+    for (int k = 0; k < given; ++k)
+      frame[static_cast<std::size_t>(k)] = c.direction[static_cast<std::size_t>(k)];
+    int found = given;
+    while (found < 3) {
+      Vec3 best{};
+      double best_norm = -1;
+      for (int axis = 0; axis < 3; ++axis) {
+        Vec3 e{};
+        e[axis] = 1;
+        for (int k = 0; k < found; ++k) {
+          const Vec3& f = frame[static_cast<std::size_t>(k)];
+          e -= dot(e, f) * f;
+        }
+        const double norm = std::sqrt(dot(e, e));
+        if (norm > best_norm + 1e-9) {
+          best_norm = norm;
+          best = (1 / norm) * e;
+        }
+      }
+      frame[static_cast<std::size_t>(found++)] = best;
+    }
+    FreeBasis basis;
+    basis.count = 3 - given;
+    for (int k = 0; k < 3; ++k) {
+      const Vec3& f = frame[static_cast<std::size_t>(k < basis.count ? given + k : k - basis.count)];
+      for (int i = 0; i < 3; ++i) basis.directions(i, k) = f[i];
+    }
+    return basis;
+  }
+
+  // Number of a row in the gather lists: compliant rows first, then prescribed ones.
+  Index gather_row(std::size_t pool, Index row) const {
+    const Index base = s_->parts_.row_pools[pool]->law == RowLaw::compliant ? 0 : s_->rows_;
+    return base + s_->first_row_[pool] + row;
+  }
+
+  void gather_rows() {
+    std::vector<Contribution> to_row, to_function;
+    for (std::size_t p = 0; p < s_->parts_.row_pools.size(); ++p) {
+      const RowPool& pool = *s_->parts_.row_pools[p];
+      const std::int64_t base = s_->places_[at(pool.stencil_pool)].function;
+      for (Index r = 0; r < pool.rows(); ++r) {
+        for (Index k = pool.map.offset[at(r)]; k < pool.map.offset[at(r) + 1]; ++k) {
+          const std::int64_t f = base + pool.map.item[at(k)];
+          const Index g = gather_row(p, r);
+          to_row.push_back({static_cast<std::uint64_t>(g), f, pool.weight[at(k)]});
+          to_function.push_back({static_cast<std::uint64_t>(f), g, pool.weight[at(k)]});
+        }
+      }
+    }
+    fill_gather(to_row, s_->rows_ + s_->prescribed_rows_, s_->row_gather_);
+    fill_gather(to_function, s_->totals_.function, s_->function_gather_);
+  }
+
+  // Gather lists for destinations 0..count-1, the key being the destination.
+  static void fill_gather(std::vector<Contribution>& c, std::int64_t count, Gather& gather) {
+    sort_by_destination(c);
+    std::size_t i = 0;
+    for (std::int64_t d = 0; d < count; ++d) {
+      for (; i < c.size() && c[i].key == static_cast<std::uint64_t>(d); ++i) {
+        gather.source.push_back(c[i].source);
+        gather.weight.push_back(c[i].weight);
+      }
+      gather.offset.push_back(static_cast<std::int64_t>(i));
+    }
+  }
+
+  void gather_residual() {
+    std::vector<Contribution> c;
+    for (std::size_t p = 0; p < s_->parts_.stencil_pools.size(); ++p) {
+      const auto& item = s_->parts_.stencil_pools[p]->nodes().item;
+      for (std::size_t k = 0; k < item.size(); ++k) {
+        c.push_back(
+            {static_cast<std::uint64_t>(item[k]), s_->places_[p].gradient + static_cast<std::int64_t>(k), 1});
+      }
+    }
+    fill_gather(c, s_->nodes(), s_->residual_gather_);
+    s_->residual_gather_.weight.clear();
+  }
+
+  void gather_blocks() {
+    std::vector<Contribution> c;
+    for (std::size_t p = 0; p < s_->parts_.stencil_pools.size(); ++p) {
+      const StencilPool& pool = *s_->parts_.stencil_pools[p];
+      if (!pool.has_hessian()) continue;
+      for (Index s = 0; s < pool.stencils(); ++s) {
+        const auto nodes = pool.nodes()[s];
+        std::int64_t slot = s_->places_[p].hessian + pool.hessian_offset()[at(s)];
+        for (std::size_t a = 0; a < nodes.size(); ++a) {
+          for (std::size_t b = 0; b <= a; ++b, ++slot) {
+            // The destination is the lower triangle; a block met the other way round is marked by complement.
+            if (nodes[a] >= nodes[b]) {
+              c.push_back({key_of(nodes[a], nodes[b]), slot, 1});
+            } else {
+              c.push_back({key_of(nodes[b], nodes[a]), ~slot, 1});
+            }
+          }
+        }
+      }
+    }
+    // Mass, shifts and prescribed motion need every diagonal block; a source is not needed for one.
+    std::vector<bool> has_diagonal(at(s_->nodes()), false);
+    for (const auto& e : c) {
+      if ((e.key >> 32) == (e.key & 0xffffffffu)) has_diagonal[e.key & 0xffffffffu] = true;
+    }
+    gather_by_key(c, false, s_->block_gather_, s_->block_nodes_);
+    for (Index i = 0; i < s_->nodes(); ++i) {
+      if (has_diagonal[at(i)]) continue;
+      s_->block_nodes_.push_back({i, i});
+      s_->block_gather_.offset.push_back(s_->block_gather_.offset.back());
+    }
+    place_mass();
+  }
+
+  // The stencils of a solid couple every pair of nodes that share a cell, so each entry has its block.
+  void place_mass() {
+    auto& entries = s_->parts_.mass_entries;
+    if (entries.empty()) return;
+    std::vector<std::pair<std::uint64_t, std::size_t>> blocks;
+    for (std::size_t d = 0; d < s_->block_nodes_.size(); ++d)
+      blocks.push_back({key_of(s_->block_nodes_[d][0], s_->block_nodes_[d][1]), d});
+    std::sort(blocks.begin(), blocks.end());
+    s_->block_mass_.assign(s_->block_nodes_.size(), 0);
+    for (const MassEntry& e : entries) {
+      const auto found =
+          std::lower_bound(blocks.begin(), blocks.end(), std::pair(key_of(e.row, e.col), std::size_t{0}));
+      s_->block_mass_[found->second] += e.value;
+    }
+  }
+
+  void gather_jacobian() {
+    std::vector<Contribution> c;
+    for (std::size_t p = 0; p < s_->parts_.row_pools.size(); ++p) {
+      const RowPool& rows = *s_->parts_.row_pools[p];
+      if (rows.law != RowLaw::compliant) continue;
+      const StencilPool& pool = *s_->parts_.stencil_pools[at(rows.stencil_pool)];
+      const PoolPlace& place = s_->places_[at(rows.stencil_pool)];
+      const Index functions = pool.functions();
+      for (Index r = 0; r < rows.rows(); ++r) {
+        for (Index k = rows.map.offset[at(r)]; k < rows.map.offset[at(r) + 1]; ++k) {
+          const Index s = rows.map.item[at(k)] / functions, f = rows.map.item[at(k)] % functions;
+          const auto nodes = pool.nodes()[s];
+          const std::int64_t first = place.jacobian +
+                                     static_cast<std::int64_t>(pool.nodes().offset[at(s)]) * functions +
+                                     static_cast<std::int64_t>(f) * static_cast<std::int64_t>(nodes.size());
+          for (std::size_t a = 0; a < nodes.size(); ++a) {
+            c.push_back({key_of(s_->first_row_[p] + r, nodes[a]), first + static_cast<std::int64_t>(a),
+                         rows.weight[at(k)]});
+          }
+        }
+      }
+    }
+    gather_by_key(c, true, s_->jacobian_gather_, s_->jacobian_ends_);
+  }
+
+  void collect_compliance() {
+    std::vector<bool> diagonal(at(s_->rows_), false);
+    for (std::size_t p = 0; p < s_->parts_.row_pools.size(); ++p) {
+      const RowPool& pool = *s_->parts_.row_pools[p];
+      if (pool.law != RowLaw::compliant) continue;
+      const Index base = s_->first_row_[p];
+      // The tangent of a law takes the place of constant values.
+      if (pool.has_law()) s_->laws_.push_back({static_cast<Index>(p), s_->compliance_.size()});
+      for (const ComplianceEntry& e : pool.compliance) {
+        s_->compliance_.push_back({base + e.row, base + e.col, pool.has_law() ? 0.0 : e.value});
+        if (e.row == e.col) diagonal[at(base + e.row)] = true;
+      }
+    }
+    for (Index r = 0; r < s_->rows_; ++r) {
+      if (!diagonal[at(r)]) s_->compliance_.push_back({r, r, 0.0});
+    }
+    release_idle_rows();
+  }
+
+  // Hard rows whose nodes are all given in all directions have no unknown to act on: their line of the matrix
+  // would be empty. With their own metric as compliance they have a multiplier, which nothing feels but the
+  // reactions of the supports.
+  void release_idle_rows() {
+    std::vector<double> size(at(s_->rows_), 0);
+    std::vector<std::size_t> own(at(s_->rows_), 0);
+    for (std::size_t k = 0; k < s_->compliance_.size(); ++k) {
+      const ComplianceEntry& e = s_->compliance_[k];
+      size[at(e.row)] += std::abs(e.value);
+      size[at(e.col)] += std::abs(e.value);
+      if (e.row == e.col) own[at(e.row)] = k;
+    }
+    for (const auto& [pool, entry] : s_->laws_) {
+      const auto first = s_->first_row_[at(pool)], count = s_->parts_.row_pools[at(pool)]->rows();
+      std::fill_n(size.begin() + first, count, 1.0);
+    }
+    std::vector<std::uint8_t> acts(at(s_->rows_), 0);
+    for (const auto& [row, node] : s_->jacobian_ends_) {
+      if (s_->first_unknown_[at(node) + 1] > s_->first_unknown_[at(node)]) acts[at(row)] = 1;
+    }
+    for (Index r = 0; r < s_->rows_; ++r) {
+      if (acts[at(r)] || size[at(r)] > 0) continue;
+      s_->compliance_[own[at(r)]].value = s_->row_metric_[at(r)];
+      s_->idle_rows_.push_back(r);
+    }
+  }
+
+  void collect_bounds_and_memory() {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (std::size_t p = 0; p < s_->parts_.row_pools.size(); ++p) {
+      const RowPool& pool = *s_->parts_.row_pools[p];
+      s_->first_memory_.push_back(s_->memory_);
+      s_->memory_ += pool.memory();
+      if (pool.law != RowLaw::compliant || (pool.lower.empty() && pool.upper.empty())) continue;
+      s_->row_lower_.resize(at(s_->rows_), -infinity);
+      s_->row_upper_.resize(at(s_->rows_), infinity);
+      const auto first = s_->first_row_[p];
+      std::copy(pool.lower.begin(), pool.lower.end(), s_->row_lower_.begin() + first);
+      std::copy(pool.upper.begin(), pool.upper.end(), s_->row_upper_.begin() + first);
+      if (!std::isfinite(pool.largest_overshoot)) continue;
+      s_->row_overshoot_.resize(at(s_->rows_), infinity);
+      std::fill_n(s_->row_overshoot_.begin() + first, pool.rows(), pool.largest_overshoot);
+    }
+    for (const auto& pool : s_->parts_.stencil_pools) {
+      s_->first_stencil_memory_.push_back(s_->memory_);
+      s_->memory_ += pool->memory();
+      s_->has_lag_ = s_->has_lag_ || pool->has_lag();
+      s_->couples_ = s_->couples_ || (pool->has_lag() && pool->couples());
+      s_->has_barrier_ = s_->has_barrier_ || pool->has_barrier();
+      s_->has_followers_ = s_->has_followers_ || pool->follows();
+    }
+  }
+
+  // Unknowns ascend with nodes and then with rows, so columns come out sorted without a look at their
+  // entries.
+  void build_kkt() {
+    const auto& unknown = s_->row_unknown_;
+    std::vector<std::uint64_t> blocks, row_entries, compliance_entries;  // keys: column, row
+    for (const auto& [i, j] : s_->block_nodes_) blocks.push_back(key_of(j, i));
+    for_filled_blocks([&](Index i, Index j) { blocks.push_back(key_of(j, i)); });
+    for (const auto& [row, node] : s_->jacobian_ends_) {
+      if (unknown[at(row)] >= 0) row_entries.push_back(key_of(node, unknown[at(row)]));
+    }
+    for (const ComplianceEntry& e : s_->compliance_) {
+      if (unknown[at(e.row)] >= 0)
+        compliance_entries.push_back(key_of(unknown[at(e.col)], unknown[at(e.row)]));
+    }
+    for (auto* keys : {&blocks, &row_entries, &compliance_entries}) {
+      sort_by_destination(*keys);
+      keys->erase(std::unique(keys->begin(), keys->end()), keys->end());
+    }
+    SymmetricPattern& kkt = s_->kkt_;
+    const auto& first = s_->first_unknown_;
+    kkt.size = s_->free_unknowns() + static_cast<Index>(s_->kept_rows_.size());
+    kkt.row.reserve(9 * blocks.size() + 3 * row_entries.size() + compliance_entries.size());
+    kkt.column_start = {0};
+    const auto end_of = [](const std::vector<std::uint64_t>& keys, std::size_t from, Index column) {
+      while (from < keys.size() && static_cast<Index>(keys[from] >> 32) == column) ++from;
+      return from;
+    };
+    const auto row_of = [](std::uint64_t key) { return static_cast<Index>(key & 0xffffffffu); };
+    const auto end_column = [&] { kkt.column_start.push_back(static_cast<std::int64_t>(kkt.row.size())); };
+    std::size_t block = 0, entry = 0;
+    for (Index j = 0; j < s_->nodes(); ++j) {
+      const std::size_t end_of_blocks = end_of(blocks, block, j),
+                        end_of_entries = end_of(row_entries, entry, j);
+      for (Index c = first[at(j)]; c < first[at(j) + 1]; ++c) {
+        for (std::size_t k = block; k < end_of_blocks; ++k) {
+          const Index i = row_of(blocks[k]);
+          for (Index r = i == j ? c : first[at(i)]; r < first[at(i) + 1]; ++r) kkt.row.push_back(r);
+        }
+        for (std::size_t k = entry; k < end_of_entries; ++k) kkt.row.push_back(row_of(row_entries[k]));
+        end_column();
+      }
+      block = end_of_blocks;
+      entry = end_of_entries;
+    }
+    entry = 0;
+    for (Index u = s_->free_unknowns(); u < kkt.size; ++u) {
+      for (const std::size_t end = end_of(compliance_entries, entry, u); entry < end; ++entry)
+        kkt.row.push_back(row_of(compliance_entries[entry]));
+      end_column();
+    }
+  }
+
+  // Visits all blocks that rows add to the stiffness. Nodes of a row ascend, so the blocks (i, j) are those
+  // of the lower triangle.
+  template <class Visit>
+  void for_filled_blocks(Visit visit) const {
+    for (const Index row : s_->filled_rows_) {
+      const auto begin = s_->row_jacobian_begin_[at(row)], end = s_->row_jacobian_begin_[at(row) + 1];
+      for (auto a = begin; a < end; ++a) {
+        for (auto b = begin; b <= a; ++b) visit(s_->jacobian_ends_[a][1], s_->jacobian_ends_[b][1]);
+      }
+    }
+  }
+
+  std::int64_t place(Index row, Index col) const {
+    const auto& kkt = s_->kkt_;
+    const auto begin = kkt.row.begin() + kkt.column_start[at(col)];
+    const auto end = kkt.row.begin() + kkt.column_start[at(col) + 1];
+    return std::lower_bound(begin, end, row) - kkt.row.begin();
+  }
+
+  void locate_entries() {
+    const auto& first = s_->first_unknown_;
+    const auto locate = [&](std::vector<std::int64_t>& places, Index row_or_node, Index node, bool is_row) {
+      for (Index k = 0; k < 3; ++k) {
+        const Index c = first[at(node)] + k;
+        if (c >= first[at(node) + 1]) {
+          places.push_back(-1);
+        } else if (is_row) {
+          const Index u = s_->row_unknown_[at(row_or_node)];
+          places.push_back(u < 0 ? -1 : place(u, c));
+        } else if (row_or_node == node) {
+          places.push_back(place(c, c));
+        } else {
+          places.push_back(
+              first[at(row_or_node)] < first[at(row_or_node) + 1] ? place(first[at(row_or_node)], c) : -1);
+        }
+      }
+    };
+    for (const auto& [i, j] : s_->block_nodes_) locate(s_->block_place_, i, j, false);
+    for (const auto& [row, node] : s_->jacobian_ends_) locate(s_->jacobian_place_, row, node, true);
+    for (const ComplianceEntry& e : s_->compliance_) {
+      const Index row = s_->row_unknown_[at(e.row)], col = s_->row_unknown_[at(e.col)];
+      s_->compliance_place_.push_back(row < 0 ? -1 : place(row, col));
+    }
+    for_filled_blocks([&](Index i, Index j) {
+      for (Index c = first[at(j)]; c < first[at(j) + 1]; ++c) {
+        const Index from = i == j ? c : first[at(i)];
+        s_->filled_place_.push_back(from < first[at(i) + 1] ? place(from, c) : -1);
+      }
+    });
+    for (Index i = 0; i < s_->kkt_.size; ++i) s_->diagonal_place_.push_back(s_->kkt_.column_start[at(i)]);
+  }
+
+  // The unknowns of a node share a group; a local row joins the node that most of its stencils have in
+  // common, so that the ordering sees one vertex a node. Rows over large parts of a body stay apart.
+  void group_unknowns() {
+    SymmetricPattern& kkt = s_->kkt_;
+    kkt.group.assign(at(kkt.size), -1);
+    Index groups = 0;
+    std::vector<Index> group_of_node(at(s_->nodes()), -1);
+    for (Index i = 0; i < s_->nodes(); ++i) {
+      for (Index c = s_->first_unknown_[at(i)]; c < s_->first_unknown_[at(i) + 1]; ++c) {
+        if (group_of_node[at(i)] < 0) group_of_node[at(i)] = groups++;
+        kkt.group[at(c)] = group_of_node[at(i)];
+      }
+    }
+    std::vector<Index> rows_in(at(groups), 0);
+    std::size_t e = 0;
+    for (Index r = 0; r < s_->rows_; ++r) {
+      const std::size_t begin = e;
+      while (e < s_->jacobian_ends_.size() && s_->jacobian_ends_[e][0] == r) ++e;
+      if (s_->row_unknown_[at(r)] < 0) continue;
+      Index best = -1;
+      std::int64_t best_count = 0;
+      if (e - begin <= local_row_nodes) {
+        for (std::size_t k = begin; k < e; ++k) {
+          const Index g = group_of_node[at(s_->jacobian_ends_[k][1])];
+          if (g < 0) continue;
+          const std::int64_t count = s_->jacobian_gather_.offset[k + 1] - s_->jacobian_gather_.offset[k];
+          if (best < 0 || count > best_count || (count == best_count && rows_in[at(g)] < rows_in[at(best)])) {
+            best = g;
+            best_count = count;
+          }
+        }
+      }
+      if (best < 0) {
+        best = groups++;
+        rows_in.push_back(0);
+      }
+      ++rows_in[at(best)];
+      kkt.group[at(s_->row_unknown_[at(r)])] = best;
+    }
+    kkt.groups = groups;
+  }
+
+  void find_ordering_base() {
+    if (!s_->has_followers_) return;
+    if (!s_->parts_.ordering_base) {
+      s_->parts_.ordering_base = std::make_shared<OrderingBase>();
+      s_->parts_.ordering_base->pattern = s_->kkt_;
+    }
+    s_->kkt_.base = s_->parts_.ordering_base;
+  }
+
+  void hash_layout() {
+    Hash h;
+    h.add(std::span<const Index>(s_->kkt_.row));
+    h.add(std::span<const std::int64_t>(s_->kkt_.column_start));
+    h.add(static_cast<std::uint64_t>(s_->nodes()));
+    h.add(static_cast<std::uint64_t>(s_->rows_));
+    h.add(static_cast<std::uint64_t>(s_->prescribed_rows_));
+    s_->layout_ = h.value();
+  }
+
+  std::shared_ptr<System> s_;
+};
+
+Result<std::shared_ptr<const System>> System::compile(SystemParts parts) {
+  return SystemCompiler(std::move(parts)).run();
+}
+
+}  // namespace isochor

@@ -1,0 +1,274 @@
+// Saved states of a world. Version 2: magic, version and length in bytes; fingerprints of the parts of the
+// scene; time, positions, velocities, multipliers, what schemes and effects keep, amounts, reactions; a
+// checksum over all of it. A state is loaded whole or not at all.
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "engine/base/bytes.h"
+#include "engine/base/fingerprint.h"
+#include "engine/base/text.h"
+#include "engine/world/world_impl.h"
+
+namespace isochor {
+
+namespace {
+
+constexpr std::uint64_t kMagic = 0x6574617473736f69ull;       // "iosstate"
+constexpr std::uint64_t kFirstMagic = 0x31726f68636f7369ull;  // of version 1, without a checksum
+constexpr std::uint64_t kVersion = 3;
+
+struct Header {
+  std::uint64_t magic = kMagic, version = kVersion, bytes = 0;
+};
+
+// What follows the header.
+struct Moment {
+  double t = 0;
+  std::vector<Vec3> x, v;
+  std::vector<double> lambda, extra;
+};
+struct Content {
+  std::vector<ScenePart> scene;
+  Moment now;
+  std::vector<double> amounts;
+  std::vector<Vec3> reactions;
+  std::vector<Moment> settled;  // none, or the state in balance behind an unfinished one
+};
+
+Moment moment_of(const State& s) {
+  return {s.t, s.x, s.v, s.lambda, s.extra};
+}
+State state_of(Moment&& m) {
+  State s;
+  s.t = m.t;
+  s.x = std::move(m.x);
+  s.v = std::move(m.v);
+  s.lambda = std::move(m.lambda);
+  s.extra = std::move(m.extra);
+  return s;
+}
+
+// What a scene's options mean; how its equations are solved, and how well, may differ.
+void describe_options(const WorldOptions& o, std::vector<ScenePart>& parts) {
+  const auto part = [&parts](const char* what, const auto&... values) {
+    parts.push_back({what, Fingerprint().add(values...).value()});
+  };
+  parts.push_back({"the time scheme", Fingerprint().add(o.scheme).value()});
+  part("gravity", o.gravity, o.gravity_curve);
+  const bool sweeps = o.method == Method::position_based;
+  part("the number of position-based sweeps", sweeps, sweeps ? o.sweeps : 0);
+  if (!o.scheme->has_inertia()) return;
+  part("the consistency of the mass matrix", o.consistent_mass);
+  part("the bound on the time error", o.time_error);
+}
+
+std::uint64_t fingerprint_of(const RegionData& region) {
+  const MaterialModel& m = *region.material;
+  Fingerprint f;
+  f.add(region.name, region.density, m.name(), m.shear_modulus(), m.inverse_bulk(), m.poisson(), m.young(),
+        m.defined_inverted(), m.distortional());
+  if (const auto complete = m.complete()) f.add(complete.value());
+  for (std::size_t c = 0; c < m.field_cells(); ++c) {
+    const auto cell = static_cast<Index>(c);
+    f.add(m.stiffness_factor(cell), m.poisson_of(cell), m.inverse_bulk_of(cell));
+  }
+  return f.value();
+}
+
+void describe_body(const BodyData& body, std::vector<ScenePart>& parts) {
+  const std::string who = " of body \"" + body.name + "\"";
+  const Mesh& m = body.mesh;
+  parts.push_back({"the element" + who,
+                   Fingerprint().add(body.element, body.guard_threshold, body.guard_stiffness).value()});
+  parts.push_back({"the mesh" + who, Fingerprint()
+                                         .add(m.cell_type, m.nodes, m.cells, m.cell_region, m.regions,
+                                              m.surfaces, m.node_sets, m.fields)
+                                         .value()});
+  for (const RegionData& region : body.regions) {
+    const std::string where = body.regions.size() > 1 ? " in region \"" + region.name + "\"" : "";
+    parts.push_back({"the material" + who + where, fingerprint_of(region)});
+  }
+}
+
+// How the scene of a saved state differs from that of this world; empty: it does not.
+std::string difference(const std::vector<ScenePart>& saved, const std::vector<ScenePart>& here) {
+  constexpr std::size_t most = 4;
+  std::vector<std::string> all;
+  // Names may repeat: the n-th of a name is held against the n-th of that name.
+  const auto counterpart = [](const std::vector<ScenePart>& from, std::size_t i,
+                              const std::vector<ScenePart>& to) {
+    const auto same = [&](const ScenePart& p) { return p.what == from[i].what; };
+    auto left = std::count_if(from.begin(), from.begin() + static_cast<std::ptrdiff_t>(i), same);
+    return std::find_if(to.begin(), to.end(), [&](const ScenePart& p) { return same(p) && left-- == 0; });
+  };
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    const auto other = counterpart(here, i, saved);
+    if (other == saved.end())
+      all.push_back(here[i].what + " (the state has none)");
+    else if (other->fingerprint != here[i].fingerprint)
+      all.push_back(here[i].what);
+  }
+  for (std::size_t i = 0; i < saved.size(); ++i) {
+    if (counterpart(saved, i, here) == here.end()) all.push_back(saved[i].what + " (this world has none)");
+  }
+  if (all.empty() && saved.size() != here.size()) all.emplace_back("the number of its parts");
+  for (std::size_t i = 0; all.empty() && i < here.size(); ++i) {
+    if (saved[i].what != here[i].what) all.emplace_back("the order of its parts");
+  }
+  std::string text;
+  for (std::size_t i = 0; i < std::min(all.size(), most); ++i) text += (i > 0 ? ", " : "") + all[i];
+  if (all.size() > most) text += " and " + std::to_string(all.size() - most) + " more";
+  return text;
+}
+
+bool finite(std::span<const double> list) {
+  return std::all_of(list.begin(), list.end(), [](double v) { return std::isfinite(v); });
+}
+bool finite(std::span<const Vec3> list) {
+  return std::all_of(list.begin(), list.end(), [](const Vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+  });
+}
+
+Error damaged(const std::string& how) {
+  return Error{"load: the saved state is damaged (" + how + "); take an earlier one"};
+}
+
+Result<Content> read(std::span<const std::byte> bytes) {
+  const std::size_t size = bytes.size();
+  ByteReader in(bytes);
+  Header header;
+  if (!in.take(header.magic) || (header.magic != kMagic && header.magic != kFirstMagic))
+    return Error{"load: these bytes are no saved state of a world (wrong first eight bytes)"};
+  if (header.magic == kFirstMagic || !in.take(header.version) || header.version != kVersion) {
+    return Error{"load: the state was saved in format " +
+                 std::to_string(header.magic == kFirstMagic ? 1 : header.version) +
+                 ", this library reads format " + std::to_string(kVersion) +
+                 "; save it anew with this library"};
+  }
+  if (!in.take(header.bytes) || header.bytes != size) {
+    return damaged("it has " + std::to_string(size) + " bytes where it says " + std::to_string(header.bytes));
+  }
+  if (ByteReader whole(bytes); !whole.unseal()) return damaged("its checksum does not fit");
+  Content content;
+  in = ByteReader(bytes.subspan(sizeof(Header), size - sizeof(Header) - sizeof(std::uint64_t)));
+  if (!in.take(content) || in.left() > 0) return damaged("its lists do not fit its length");
+  return content;
+}
+
+}  // namespace
+
+const std::vector<ScenePart>& World::Impl::scene_parts() {
+  if (!described.empty()) return described;
+  describe_options(options, described);
+  for (const BodyData& body : builder.bodies()) describe_body(body, described);
+  for (const EffectPtr& source : sources) {
+    described.push_back({"effect \"" + source->name() + "\"", Fingerprint().add(source).value()});
+  }
+  return described;
+}
+
+// The stencils that a saved state has, put in place of the present ones.
+Result<void> World::Impl::restore_stencils(std::span<const double> memory) {
+  if (!system->has_followers()) return {};
+  const auto present = system->parts().stencil_pools;
+  auto pools = present;
+  bool changed = false;
+  for (std::size_t p = 0; p < pools.size(); ++p) {
+    if (!pools[p]->follows()) continue;
+    const auto kept = memory.subspan(at(system->first_stencil_memory(static_cast<Index>(p))),
+                                     static_cast<std::size_t>(pools[p]->memory()));
+    // Zeros: no step has been accepted, and the stencils are those that the scene began with.
+    if (std::all_of(kept.begin(), kept.end(), [](double v) { return v == 0; })) {
+      pools[p] = first_stencils[p];
+    } else {
+      auto restored = pools[p]->restored(kept);
+      if (!restored) return damaged(restored.error());
+      pools[p] = std::move(restored).value();
+    }
+    changed = true;
+  }
+  if (!changed) return {};
+  auto replaced = replace_stencils(std::move(pools));
+  if (replaced) return {};
+  // The world is as it was.
+  (void)replace_stencils(present);
+  return Error{"load: " + replaced.error()};
+}
+
+std::vector<std::byte> World::save() const {
+  Impl& w = *impl_;
+  if (!w.compile()) return {};
+  Content content{w.scene_parts(), moment_of(w.state), {}, w.reactions, {}};
+  if (w.settled) content.settled.push_back(moment_of(*w.settled));
+  w.save_amounts(content.amounts);
+  ByteWriter out;
+  out.put(Header{});
+  out.put(content);
+  return std::move(out).sealed(offsetof(Header, bytes));
+}
+
+// Whether numbers can be a state of this world.
+template <class M>
+Result<void> World::Impl::check_moment(const M& m) const {
+  if (m.x.size() != state.x.size() || m.v.size() != m.x.size() || m.lambda.size() != state.lambda.size() ||
+      m.extra.size() != state.extra.size())
+    return damaged("its sizes do not fit this scene");
+  if (!std::isfinite(m.t) || !finite(m.x) || !finite(m.v) || !finite(m.lambda) || !finite(m.extra))
+    return damaged("it holds numbers that are not finite");
+  // Beyond this, searches for what is close have no numbers left to count their boxes with.
+  constexpr double farthest = 1e12;
+  const double limit = farthest * std::max(system->length(), 1e-300);
+  for (std::size_t i = 0; i < m.x.size(); ++i) {
+    if (std::max({std::abs(m.x[i].x), std::abs(m.x[i].y), std::abs(m.x[i].z)}) <= limit) continue;
+    return damaged("node " + std::to_string(i) + " is more than " + number(limit) + " m away");
+  }
+  return {};
+}
+
+Result<void> World::load(std::span<const std::byte> bytes) {
+  Impl& w = *impl_;
+  if (auto r = w.compile(); !r) return r;
+  auto content = read(bytes);
+  if (!content) return Error{content.error()};
+  Content& c = content.value();
+  if (const std::string what = difference(c.scene, w.scene_parts()); !what.empty()) {
+    return Error{"load: the state was saved from another scene: of this world differ " + what +
+                 "; load it into a world built the same way"};
+  }
+  if (c.reactions.size() != w.reactions.size() || c.settled.size() > 1)
+    return damaged("its sizes do not fit this scene");
+  if (!finite(c.reactions) || !finite(c.amounts)) return damaged("it holds numbers that are not finite");
+  if (auto r = w.check_moment(c.now); !r) return r;
+  if (!c.settled.empty()) {
+    if (auto r = w.check_moment(c.settled.front()); !r) return r;
+  }
+  if (!w.amounts_fit(c.amounts)) return damaged("its amounts are none of these effects");
+  if (auto r = w.restore_stencils(std::span<const double>(c.now.extra).first(at(w.system->memory()))); !r)
+    return r;
+  w.load_amounts(c.amounts);
+  w.state = state_of(std::move(c.now));
+  w.settled.reset();
+  if (!c.settled.empty()) w.settled = state_of(std::move(c.settled.front()));
+  w.reactions.swap(c.reactions);
+  return {};
+}
+
+std::uint64_t World::state_hash() const {
+  const Impl& w = *impl_;
+  Hash h;
+  h.add(w.state.hash());
+  bool set = false;
+  for (const auto& instance : w.instances) {
+    const Amount* a = instance->amount();
+    if (!a || !a->set_by_host()) continue;
+    std::vector<double> numbers;
+    a->save(numbers);
+    h.add(std::span<const double>(numbers));
+    set = true;
+  }
+  return set ? h.value() : w.state.hash();
+}
+
+}  // namespace isochor

@@ -1,0 +1,260 @@
+#include "engine/world/recovery.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "engine/mesh/cell_shape.h"
+#include "engine/world/node_fit.h"
+
+namespace isochor {
+
+namespace {
+
+using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+struct PointState {
+  Matrix F = Matrix::Identity();
+  double J = 1, weight = 0;
+  Matrix stress = Matrix::Zero();  // Cauchy, of the energy alone
+};
+
+PointState point_state(const SolidPool& pool, const Material* energy, Index stencil, int q,
+                       std::span<const Vec3> x, std::span<const Vec3> rest) {
+  PointState p;
+  double F[9], strain = 0;
+  pool.deformation_gradient(stencil, q, x, rest, F, strain);
+  p.F = Eigen::Map<const Matrix>(F);
+  p.J = 1 + strain;
+  p.weight = pool.data().weight[at(stencil * pool.data().points + q)];
+  if (!energy) return p;
+  PointBatch batch;
+  ResponseBatch response;
+  for (int l = 0; l < kLanes; ++l) {
+    for (int i = 0; i < 9; ++i) batch.F[i][l] = F[i];
+    batch.element[l] = stencil;
+  }
+  energy->evaluate(Want::gradient, batch, response);
+  Matrix P;
+  for (int i = 0; i < 9; ++i) P(i / 3, i % 3) = response.P[i][0];
+  p.stress = P * p.F.transpose() / p.J;
+  return p;
+}
+
+struct CellState {
+  Matrix stress = Matrix::Zero();
+  double J = 0, volume = 0, pressure = 0, stretch = 0;
+};
+
+// Stress of the energy, in the order xx yy zz xy yz zx, and pressure of the rows.
+using Fit = NodeFit<7>;
+
+Fit::Values sample(const Matrix& s, double pressure) {
+  Fit::Values v;
+  v << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(2, 0), pressure;
+  return v;
+}
+
+// Stress of each patch, then the mean over the six edges of every tet. The ends of an edge get what its patch
+// has, at the middle of the patch.
+void add_patch_stress(const RecoveryInput& in, const RegionData& region, std::vector<CellState>& cells,
+                      Fit& nodes) {
+  const auto& pool = static_cast<const SolidPool&>(*in.parts.stencil_pools[at(region.elastic_pool)]);
+  const auto& energy = region.energy;
+  struct Patch {
+    Vec3 moment{};  // volume times centroid
+    double volume = 0, row_pressure = 0;
+    Matrix stress = Matrix::Zero();
+  };
+  // Patches come in the order of their edges: both ends are nodes of all their tets.
+  std::map<std::pair<Index, Index>, Patch> patches;
+  const auto each_edge = [&](Index c, auto&& visit) {
+    const Index* n = in.body.global_cells.data() + 4 * at(c);
+    for (int i = 0; i < 4; ++i) {
+      for (int j = i + 1; j < 4; ++j) visit(std::minmax({n[i], n[j]}));
+    }
+  };
+  for (const Index c : region.cells) {
+    const Index* n = in.body.global_cells.data() + 4 * at(c);
+    Vec3 centroid{};
+    for (int a = 0; a < 4; ++a) centroid += 0.25 * in.parts.rest[at(n[a])];
+    const double share = cells[at(c)].volume / 6;
+    each_edge(c, [&](const std::pair<Index, Index>& edge) {
+      Patch& p = patches[edge];
+      p.volume += share;
+      p.moment += share * centroid;
+      p.row_pressure += share * cells[at(c)].pressure;
+    });
+  }
+  Index stencil = 0;
+  for (auto& [edge, p] : patches) {
+    p.stress = point_state(pool, energy.get(), stencil++, 0, in.x, in.parts.rest).stress;
+    for (const Index end : {edge.first, edge.second}) {
+      nodes.add(end - in.body.first_node, (1 / p.volume) * p.moment, p.volume,
+                sample(p.stress, p.row_pressure / p.volume));
+    }
+  }
+  for (const Index c : region.cells) {
+    each_edge(c,
+              [&](const std::pair<Index, Index>& edge) { cells[at(c)].stress += patches[edge].stress / 6; });
+  }
+}
+
+double multiplier_at(const RecoveryInput& in, Index pool, Index stencil, int q) {
+  const SolidData& data = static_cast<const SolidPool&>(*in.parts.stencil_pools[at(pool)]).data();
+  double sum = 0;
+  for (int k = 0; k < data.functions; ++k) {
+    sum += data.shape[static_cast<std::size_t>(q * data.functions + k)] *
+           in.function_multiplier[at(pool)][at(stencil * data.functions + k)];
+  }
+  return sum;
+}
+
+// Mean pressure of the volume rows over a point, divided by J for the logarithmic strain.
+double row_pressure(const RecoveryInput& in, const RegionData& region, Index local, int q, double J) {
+  double p = 0;
+  for (std::size_t strain = 0; strain < 2; ++strain) {
+    const Index pool = region.volume_pool[strain];
+    if (pool < 0) continue;
+    const double sum = multiplier_at(in, pool, local, q);
+    p += strain == 0 ? sum : sum / J;
+  }
+  for (const SpanningVolume& v : in.body.spanning) {
+    const Index stencil = v.stencil_of_cell[at(region.cells[at(local)])];
+    if (stencil < 0) continue;
+    const double sum = multiplier_at(in, v.pool, stencil, q);
+    p += v.strain == VolumeStrain::linear ? sum : sum / J;
+  }
+  return p;
+}
+
+void add_region(const RecoveryInput& in, const RegionData& region, std::vector<CellState>& cells,
+                Fit& nodes) {
+  const ReferenceElement& element = *in.body.reference;
+  auto data = solid_data(element, in.parts.rest, in.body.global_cells, region.cells, VolumeFunctions::none);
+  if (!data) return;
+  const SolidPool pool("", std::move(data).value(), nullptr, VolumeStrain::linear);
+  const bool smoothed = in.body.element == Element::tet4_edge_smoothed;
+  const auto energy = smoothed ? nullptr : region.energy;
+  for (Index s = 0; s < pool.stencils(); ++s) {
+    CellState& cell = cells[at(region.cells[at(s)])];
+    const double volume = pool.volume(s);
+    const auto of_cell = pool.nodes()[s];
+    for (int q = 0; q < pool.data().points; ++q) {
+      const PointState p = point_state(pool, energy.get(), s, q, in.x, in.parts.rest);
+      const double w = p.weight / volume;
+      const double pressure = row_pressure(in, region, s, q, p.J);
+      cell.stress += w * p.stress;
+      cell.J += w * p.J;
+      cell.pressure += w * pressure;
+      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(Eigen::Matrix3d(p.F.transpose() * p.F),
+                                                                 Eigen::EigenvaluesOnly);
+      cell.stretch = std::max(cell.stretch, std::sqrt(std::max(0.0, eigen.eigenvalues()(2))));
+      if (smoothed) continue;
+      Vec3 point{};
+      for (std::size_t a = 0; a < of_cell.size(); ++a)
+        point +=
+            element.shape[static_cast<std::size_t>(q) * of_cell.size() + a] * in.parts.rest[at(of_cell[a])];
+      for (const Index n : of_cell)
+        nodes.add(n - in.body.first_node, point, p.weight, sample(p.stress, pressure));
+    }
+    cell.volume = volume;
+  }
+  if (smoothed) add_patch_stress(in, region, cells, nodes);
+}
+
+// Pressure multipliers that live at nodes, by node of the body; NaN where there is none.
+std::vector<double> pressure_at_nodes(const RecoveryInput& in) {
+  const Mesh& mesh = in.body.mesh;
+  std::vector<double> multiplier(mesh.nodes.size());
+  for (std::size_t i = 0; i < multiplier.size(); ++i)
+    multiplier[i] = in.node_multiplier[at(in.body.first_node) + i];
+  // Mid-edge nodes of a Tet10 take the linear pressure of their edge.
+  if (mesh.cell_type == CellType::tet10) {
+    for (std::size_t c = 0; c < mesh.cells.size(); c += 10) {
+      for (std::size_t e = 0; e < 6; ++e) {
+        const auto a = at(mesh.cells[c + kTetShape.edge[e][0]]), b = at(mesh.cells[c + kTetShape.edge[e][1]]);
+        multiplier[at(mesh.cells[c + 4 + e])] = 0.5 * (multiplier[a] + multiplier[b]);
+      }
+    }
+  }
+  return multiplier;
+}
+
+// Fitted in each region by itself, as stresses jump between materials; where regions meet, their mean by
+// volume.
+void recover_nodes(const RecoveryInput& in, std::vector<CellState>& cells, BodyFields& out) {
+  const std::size_t n = in.body.mesh.nodes.size();
+  std::vector<Fit::Values> sum(n, Fit::Values::Zero());
+  std::vector<double> volume(n, 0);
+  for (const RegionData& region : in.body.regions) {
+    Fit fit(std::span(in.parts.rest).subspan(at(in.body.first_node), n));
+    add_region(in, region, cells, fit);
+    for (std::size_t i = 0; i < n; ++i) {
+      const double v = fit.volume(static_cast<Index>(i));
+      if (v > 0) sum[i] += v * fit.value(static_cast<Index>(i));
+      volume[i] += v;
+    }
+  }
+  const std::vector<double> multiplier = pressure_at_nodes(in);
+  for (std::size_t i = 0; i < n; ++i) {
+    Fit::Values v = sum[i] / (volume[i] > 0 ? volume[i] : 1);
+    const double rows = std::isnan(multiplier[i]) ? v(6) : multiplier[i];
+    for (int k = 0; k < 3; ++k) v(k) += rows;
+    out.node_stress.insert(out.node_stress.end(), v.data(), v.data() + 6);
+    out.node_pressure.push_back((v(0) + v(1) + v(2)) / 3);
+  }
+}
+
+}  // namespace
+
+BodyFields recover_fields(const RecoveryInput& in) {
+  std::vector<CellState> cells(at(in.body.mesh.cell_count()));
+  BodyFields f;
+  recover_nodes(in, cells, f);
+  for (const CellState& cell : cells) {
+    Matrix sigma = cell.stress + cell.pressure * Matrix::Identity();
+    const double mean = sigma.trace() / 3;
+    const Matrix deviator = sigma - mean * Matrix::Identity();
+    f.cell_J.push_back(cell.J);
+    f.cell_pressure.push_back(mean);
+    f.cell_von_mises.push_back(std::sqrt(1.5 * deviator.squaredNorm()));
+    f.cell_max_stretch.push_back(cell.stretch);
+    f.cell_stress.insert(f.cell_stress.end(),
+                         {sigma(0, 0), sigma(1, 1), sigma(2, 2), sigma(0, 1), sigma(1, 2), sigma(2, 0)});
+  }
+  return f;
+}
+
+BodyMeasures measure_body(const BodyData& body, const SystemParts& parts, std::span<const Vec3> x) {
+  BodyMeasures m;
+  const auto extend = [](VolumeMeasures& all, double volume, double rest, double low, double high) {
+    const bool first = all.rest_volume == 0;
+    all.volume += volume;
+    all.rest_volume += rest;
+    all.min_J = first ? low : std::min(all.min_J, low);
+    all.max_J = first ? high : std::max(all.max_J, high);
+  };
+  for (const RegionData& region : body.regions) {
+    auto data =
+        solid_data(*body.reference, parts.rest, body.global_cells, region.cells, VolumeFunctions::none);
+    if (!data) continue;
+    const SolidPool pool("", std::move(data).value(), nullptr, VolumeStrain::linear);
+    VolumeMeasures part;
+    part.name = region.name;
+    for (Index s = 0; s < pool.stencils(); ++s) {
+      for (int q = 0; q < pool.data().points; ++q) {
+        double F[9], strain = 0;
+        pool.deformation_gradient(s, q, x, parts.rest, F, strain);
+        const double w = pool.data().weight[at(s * pool.data().points + q)];
+        extend(part, w * (1 + strain), w, 1 + strain, 1 + strain);
+      }
+    }
+    if (part.rest_volume > 0) extend(m, part.volume, part.rest_volume, part.min_J, part.max_J);
+    m.regions.push_back(std::move(part));
+  }
+  return m;
+}
+
+}  // namespace isochor

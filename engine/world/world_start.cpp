@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <cmath>
+
+#include "engine/world/world_impl.h"
+
+namespace isochor {
+
+namespace {
+
+Result<void> check_nodes(const char* call, const char* what, const BodyData& body,
+                         std::span<const Vec3> values) {
+  if (values.size() != body.mesh.nodes.size()) {
+    return Error{std::string(call) + ": " + std::to_string(values.size()) + " " + what + " for the " +
+                 std::to_string(body.mesh.nodes.size()) + " nodes of body \"" + body.name +
+                 "\"; give one a node"};
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::isfinite(values[i].x + values[i].y + values[i].z)) continue;
+    return Error{std::string(call) + ": of the " + what + ", that of node " + std::to_string(i) +
+                 " of body \"" + body.name + "\" is not a finite number"};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<void> World::set_velocities(BodyId body, std::span<const Vec3> velocities) {
+  Impl& w = *impl_;
+  if (auto r = w.compile(); !r) return r;
+  if (!w.builder.has_body(body)) {
+    return Error{"set_velocities: there is no body number " + std::to_string(static_cast<Index>(body))};
+  }
+  if (!w.options.scheme->has_inertia()) {
+    return Error{"set_velocities: the scheme of this world is " + std::string(w.options.scheme->name()) +
+                 ", in which nothing has a velocity; use a scheme of dynamics"};
+  }
+  w.settled.reset();  // what a host sets is where it wants to go on from
+  const BodyData& b = w.builder.body(body);
+  if (auto r = check_nodes("set_velocities", "velocities", b, velocities); !r) return r;
+  std::copy(velocities.begin(), velocities.end(), w.state.v.begin() + b.first_node);
+  const auto past = w.scheme_memory();
+  std::fill(past.begin(), past.end(), 0.0);
+  return {};
+}
+
+Result<void> World::set_positions(BodyId body, std::span<const Vec3> positions) {
+  Impl& w = *impl_;
+  if (auto r = w.compile(); !r) return r;
+  if (!w.builder.has_body(body)) {
+    return Error{"set_positions: there is no body number " + std::to_string(static_cast<Index>(body))};
+  }
+  w.settled.reset();  // what a host sets is where it wants to go on from
+  const BodyData& b = w.builder.body(body);
+  if (auto r = check_nodes("set_positions", "positions", b, positions); !r) return r;
+  const auto first = at(b.first_node);
+  std::copy(positions.begin(), positions.end(), w.state.x.begin() + static_cast<std::ptrdiff_t>(first));
+  std::fill_n(w.state.v.begin() + static_cast<std::ptrdiff_t>(first), positions.size(), Vec3{});
+  std::fill(w.state.lambda.begin(), w.state.lambda.end(), 0.0);
+  // Stencils and the scheme have no past either.
+  for (Index p = 0; p < static_cast<Index>(w.system->parts().stencil_pools.size()); ++p) {
+    const auto kept = w.state.extra.begin() + w.system->first_stencil_memory(p);
+    std::fill_n(kept, w.system->parts().stencil_pools[at(p)]->memory(), 0.0);
+  }
+  const auto past = w.scheme_memory();
+  std::fill(past.begin(), past.end(), 0.0);
+  return {};
+}
+
+}  // namespace isochor
