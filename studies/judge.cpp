@@ -115,13 +115,23 @@ StateJudge::Points StateJudge::edge_patches(const Mesh& mesh, const Points& tets
   return out;
 }
 
-double StateJudge::determinant(const Points& points, std::size_t point, std::span<const Vec3> x) {
+StateJudge::Determinant StateJudge::determinant(const Points& points, std::size_t point,
+                                                std::span<const Vec3> x) {
+  // Positions are those of the world: far from its origin they cancel in the columns.
+  constexpr double unit = 16 * std::numeric_limits<double>::epsilon();
   Vec3 column[3]{};
+  double lost[3]{}, size[3]{};
   for (std::size_t a = points.begin[point]; a < points.begin[point + 1]; ++a) {
     const Vec3& at = x[static_cast<std::size_t>(points.node[a])];
-    for (int k = 0; k < 3; ++k) column[k] += points.gradient[a][k] * at;
+    for (int k = 0; k < 3; ++k) {
+      column[k] += points.gradient[a][k] * at;
+      lost[k] += unit * std::abs(points.gradient[a][k]) * std::sqrt(dot(at, at));
+    }
   }
-  return dot(column[0], cross(column[1], column[2]));
+  for (int k = 0; k < 3; ++k) size[k] = std::sqrt(dot(column[k], column[k]));
+  return {dot(column[0], cross(column[1], column[2])),
+          lost[0] * size[1] * size[2] + size[0] * lost[1] * size[2] + size[0] * size[1] * lost[2] +
+              unit * size[0] * size[1] * size[2]};
 }
 
 JudgedShape StateJudge::shape(const World& world, std::size_t index) const {
@@ -129,23 +139,28 @@ JudgedShape StateJudge::shape(const World& world, std::size_t index) const {
   const auto x = world.positions(body.promise.body);
   JudgedShape out;
   out.min_J = out.min_law_J = std::numeric_limits<double>::infinity();
-  Index last = -1;
+  enum class Sign { positive, flat, negative };
+  std::vector<Sign> cells(body.cells.size() == 0 ? 0 : at(body.cells.cell.back()) + 1, Sign::positive);
   for (std::size_t p = 0; p < body.cells.size(); ++p) {
-    const double J = determinant(body.cells, p, x), w = body.cells.weight[p];
-    out.min_J = std::min(out.min_J, J);
+    const Determinant d = determinant(body.cells, p, x);
+    const double w = body.cells.weight[p];
+    out.min_J = std::min(out.min_J, d.J);
     out.rest_volume += w;
-    out.volume += w * J;
-    out.log_volume += w * std::log(J);
-    if (J > 0) continue;
+    out.volume += w * d.J;
+    out.log_volume += w * std::log(d.J);
+    Sign& sign = cells[at(body.cells.cell[p])];
+    if (d.flat()) sign = std::max(sign, Sign::flat);
+    if (!d.negative()) continue;
+    sign = Sign::negative;
     if (body.cells.needs_J[p]) ++out.forbidden;
     if (out.first_cell < 0) out.first_cell = body.cells.cell[p];
-    if (body.cells.cell[p] != last) ++out.inverted;
-    last = body.cells.cell[p];
   }
+  out.inverted = std::count(cells.begin(), cells.end(), Sign::negative);
+  out.flat = std::count(cells.begin(), cells.end(), Sign::flat);
   for (std::size_t p = 0; p < body.patches.size(); ++p) {
-    const double J = determinant(body.patches, p, x);
-    out.min_law_J = std::min(out.min_law_J, J);
-    if (!(J > 0) && body.patches.needs_J[p]) ++out.forbidden;
+    const Determinant d = determinant(body.patches, p, x);
+    out.min_law_J = std::min(out.min_law_J, d.J);
+    if (d.negative() && body.patches.needs_J[p]) ++out.forbidden;
   }
   if (body.patches.size() == 0) out.min_law_J = out.min_J;
   return out;
@@ -183,7 +198,7 @@ std::optional<Finding> StateJudge::accepted(const World& world, std::span<const 
     const JudgedShape s = shape(world, b);
     const std::string& name = world.body_name(bodies_[b].promise.body);
     if (s.forbidden > 0) {
-      return Finding{"inverted", "body \"" + name + "\": J <= 0 at " + std::to_string(s.forbidden) +
+      return Finding{"inverted", "body \"" + name + "\": J < 0 at " + std::to_string(s.forbidden) +
                                      " points whose law, guard or rows have no value there, smallest J " +
                                      number(std::min(s.min_J, s.min_law_J))};
     }

@@ -26,8 +26,9 @@ struct BodyPromise {
 struct JudgedShape {
   double min_law_J = 1;          // over points where the energy is evaluated
   double min_J = 1;              // over points of cells
-  std::int64_t inverted = 0;     // cells with J <= 0 somewhere
-  std::int64_t forbidden = 0;    // points of energies, guards and rows where J > 0 was promised and is not so
+  std::int64_t inverted = 0;     // cells with J < 0 somewhere, beyond the rounding of J
+  std::int64_t flat = 0;         // other cells, with a J that rounding does not tell from 0 somewhere
+  std::int64_t forbidden = 0;    // points of energies, guards and rows where J > 0 was promised and J < 0
   std::int64_t first_cell = -1;  // of those that are inverted
   double volume = 0, rest_volume = 0;  // [m^3]
   double log_volume = 0;               // integral of log J over the rest [m^3]; NaN where J <= 0
@@ -74,7 +75,13 @@ class StateJudge {
   };
   static Points cell_points(const Mesh& mesh, std::span<const Vec3> rest, const BodyPromise& promise);
   static Points edge_patches(const Mesh& mesh, const Points& tets, const BodyPromise& promise);
-  static double determinant(const Points& points, std::size_t point, std::span<const Vec3> x);
+  // J, and how far rounding may put it from what another order of the same sums gives.
+  struct Determinant {
+    double J = 1, rounding = 0;
+    bool negative() const { return !(J >= -rounding); }
+    bool flat() const { return !negative() && J <= rounding; }
+  };
+  static Determinant determinant(const Points& points, std::size_t point, std::span<const Vec3> x);
 
   std::vector<Body> bodies_;
 };

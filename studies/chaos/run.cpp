@@ -4,8 +4,8 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <tuple>
 
+#include "engine/base/text.h"
 #include "scenes/scene_file.h"
 #include "studies/chaos/scene_judge.h"
 
@@ -169,13 +169,13 @@ bool ChaosRun::take(const StepReport& report, double before, std::uint64_t hash)
   if (report.status == StepStatus::converged) {
     ++out_.steps;
     if (out_.warning.empty()) out_.warning = report.warning;
-    const auto [min_J, inverted] = judge_.smallest_J(world);
-    if (report.inverted_cells == inverted && std::abs(report.min_J - min_J) <= 1e-6 * (1 + std::abs(min_J)))
-      return false;
-    return broken("measures", "the report says min J " + std::to_string(report.min_J) + " and " +
+    const SceneJudge::Inversion found = judge_.inversion(world);
+    if (found.agrees(report)) return false;
+    return broken("measures", "the report says min J " + number(report.min_J) + " and " +
                                   std::to_string(report.inverted_cells) +
-                                  " inverted cells, where there are " + std::to_string(min_J) + " and " +
-                                  std::to_string(inverted));
+                                  " inverted cells, where there are " + number(found.min_J) + " and " +
+                                  std::to_string(found.inverted) + " to " +
+                                  std::to_string(found.inverted + found.flat));
   }
   if (given_back) {
     // A budget that leaves nothing to keep is no reason why later steps should not go on.
@@ -233,7 +233,9 @@ void ChaosRun::march() {
       return;
     }
     const bool over = take(report, before, hash);
-    std::tie(out_.min_J, out_.inverted) = judge_.smallest_J(world);
+    const SceneJudge::Inversion found = judge_.inversion(world);
+    out_.min_J = found.min_J;
+    out_.inverted = static_cast<long>(found.inverted);
     if (out_.verdict == ChaosVerdict::broken) return;
     compare_reloaded(report, step);
     if (over || out_.verdict == ChaosVerdict::broken) return;

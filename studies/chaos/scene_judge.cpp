@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
 #include "engine/base/text.h"
+#include "engine/elements/material_model.h"
 #include "scenes/body_parts.h"
 #include "studies/chaos/distances.h"
 
@@ -46,6 +48,21 @@ bool is_guarded(const SceneBody& body) {
   return body.guard_stiffness.value_or(1) > 0;
 }
 
+// Where kappa = 0, as in many laws at nu = 0, rows would carry no pressure and are none.
+bool carries_rows(const VolumeRows& rows, const MaterialDef& material, const std::string& folder) {
+  if (rows.def.hard) return true;
+  const auto made = make_material(material, folder);
+  return made && std::isfinite(made.value()->inverse_bulk());
+}
+
+// The largest modulus that energies of a material come from [Pa].
+double stiffness_of(const MaterialDef& m, const std::string& folder) {
+  const auto made = make_material(m, folder);
+  double stiff = m.compression_penalty.modulus + (made ? std::abs(made.value()->shear_modulus()) : 0);
+  for (const FiberFamily& f : m.fibers) stiff += f.k1;
+  return stiff;
+}
+
 std::vector<BodyPromise> promises(const SceneDef& scene, const BuiltScene& built) {
   std::vector<BodyPromise> all;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
@@ -61,7 +78,7 @@ std::vector<BodyPromise> promises(const SceneDef& scene, const BuiltScene& built
     for (const std::string& region : regions) {
       const MaterialDef& m = material_of(body, region);
       promise.law_needs_J.push_back(law_needs_J(m.law));
-      promise.cell_needs_J.push_back(is_guarded(body) || log_rows);
+      promise.cell_needs_J.push_back(is_guarded(body) || (log_rows && carries_rows(*rows, m, scene.folder)));
     }
     all.push_back(std::move(promise));
   }
@@ -262,10 +279,14 @@ void SceneJudge::watch_energy(const BuiltScene& built, std::size_t b) {
   if (!one_density && !(scene_.gravity == Vec3{})) isolated_ = carried_by_supports_ = false;
   mass_.push_back(density * volume);
   center_.push_back(built.world.measures(built.bodies[b]).center_of_mass);
-  double stiff = 0;
-  for (const MaterialDef& m : materials)
-    stiff = std::max({stiff, m.constants.young, m.constants.mu, m.own.c1 + m.own.c2, m.own.mu0});
-  energy_noise_ += 1e-9 * stiff * volume;
+  for (const MaterialDef& m : materials) energy_noise_ += 1e-9 * stiffness_of(m, scene_.folder) * volume;
+  if (scene_.analysis.type != AnalysisType::dynamics) return;
+  // Positions are rounded where they are, and velocities are differences of positions.
+  double far = 0;
+  for (const Vec3& X : built.world.rest_positions(built.bodies[b])) far = std::max(far, length(X));
+  const double h = plan_steps(scene_.analysis).h * scene_.analysis.smallest_fraction;
+  const double v = 8 * std::numeric_limits<double>::epsilon() * far / h;
+  energy_noise_ += mass_.back() * v * v;
 }
 
 void SceneJudge::watch_supports(const BuiltScene& built) {
@@ -302,14 +323,20 @@ void SceneJudge::watch_contacts(const BuiltScene& built) {
   }
 }
 
-std::pair<double, std::int64_t> SceneJudge::smallest_J(const World& world) const {
-  std::pair<double, std::int64_t> out{HUGE_VAL, 0};
+SceneJudge::Inversion SceneJudge::inversion(const World& world) const {
+  Inversion out{HUGE_VAL, 0, 0};
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
     const JudgedShape s = state_.shape(world, b);
-    out.first = std::min(out.first, s.min_J);
-    out.second += s.inverted;
+    out.min_J = std::min(out.min_J, s.min_J);
+    out.inverted += s.inverted;
+    out.flat += s.flat;
   }
   return out;
+}
+
+bool SceneJudge::Inversion::agrees(const StepReport& report) const {
+  return report.inverted_cells >= inverted && report.inverted_cells <= inverted + flat &&
+         std::abs(report.min_J - min_J) <= 1e-6 * (1 + std::abs(min_J));
 }
 
 std::optional<Finding> SceneJudge::volume(const World& world, std::size_t b) const {

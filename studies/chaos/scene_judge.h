@@ -16,8 +16,14 @@ class SceneJudge {
   // Of a state that a step converged to.
   std::optional<Finding> accepted(const BuiltScene& built, std::span<const std::string> said);
   std::optional<Finding> finite(const BuiltScene& built) const { return state_.finite(built.world); }
-  // The smallest J of all bodies, and how many cells are inverted.
-  std::pair<double, std::int64_t> smallest_J(const World& world) const;
+  // The smallest J of all bodies, how many cells are inverted, and how many may be so for all that rounding
+  // tells.
+  struct Inversion {
+    double min_J;
+    std::int64_t inverted, flat;
+    bool agrees(const StepReport& report) const;
+  };
+  Inversion inversion(const World& world) const;
 
  private:
   // What to ask later, found out at the start.

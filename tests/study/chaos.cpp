@@ -194,6 +194,69 @@ TEST_CASE("the judge finds inverted cells, whether or not the law has a value th
   CHECK((kind == "inverted" || kind == "not finite"));
 }
 
+TEST_CASE("volume rows of log J that carry no pressure promise nothing") {
+  // At nu = 0 the law has kappa = 0, its rows are none, and it lives through inversion.
+  SceneDef scene = block(Element::hex8, MaterialLaw::stvk, 0);
+  scene.volumes.emplace().emplace_back().def.strain = VolumeStrainKind::logarithmic;
+  CHECK(kind_of(scene, pushed_through, {"8 cells are inverted"}).empty());
+  for (const double poisson : {0.0, 0.3}) {
+    scene.bodies[0].materials[0].constants.poisson = poisson;
+    scene.volumes->front().def.hard = poisson == 0;
+    const std::string kind = kind_of(scene, pushed_through, {"8 cells are inverted"});
+    CHECK((kind == "inverted" || kind == "not finite"));
+  }
+}
+
+TEST_CASE("cells as flat as rounding can tell may be counted as inverted or not") {
+  SceneDef scene = block(Element::tet4, MaterialLaw::stable_neo_hookean, 0.3);
+  scene.volumes.emplace();
+  const auto judged = [&](double height, double away) {
+    BuiltScene built = built_of(scene);
+    std::vector<Vec3> x;
+    for (const Vec3& X : built.world.rest_positions(built.bodies[0]))
+      x.push_back({X.x + away, X.y - away, height * X.z + away});
+    REQUIRE(built.world.set_positions(built.bodies[0], x).ok());
+    const StateJudge judge(built.world,
+                           {simple_promise(built.world, built.bodies[0], Element::tet4, true, false)});
+    return judge.shape(built.world, 0);
+  };
+  const auto cells = static_cast<std::int64_t>(built_of(scene).world.mesh(BodyId{}).cells.size() / 4);
+  CHECK(judged(0, 0).flat == cells);
+  CHECK(judged(-1e-16, 1).flat == cells);
+  CHECK(judged(-1e-11, 0).inverted == cells);
+  CHECK(judged(1e-11, 0).inverted + judged(1e-11, 0).flat == 0);
+  // A thousand meters away the last digits of positions are what J is lost in.
+  CHECK(judged(-1e-13, 1000).flat == cells);
+  CHECK(judged(-1e-9, 1000).inverted == cells);
+  StepReport report;
+  report.min_J = 0;
+  for (report.inverted_cells = 0; report.inverted_cells <= 5; ++report.inverted_cells) {
+    const bool possible = report.inverted_cells >= 2 && report.inverted_cells <= 4;
+    CHECK(SceneJudge::Inversion{-1e-14, 2, 2}.agrees(report) == possible);
+  }
+}
+
+TEST_CASE("energy that rounding makes of far positions is nothing") {
+  // As far away as a body can be, at rest: what its energies are then, a judge must let pass.
+  SceneDef s = block(Element::tet4, MaterialLaw::ogden, 0.3);
+  s.bodies[0].materials[0].constants.young = 0;
+  s.bodies[0].materials[0].own.terms = {{1000, 2}};
+  std::get<BoxMeshDef>(s.bodies[0].mesh).lower = {1000, -1000, 300};
+  std::get<BoxMeshDef>(s.bodies[0].mesh).upper = {1001, -999, 301};
+  s.analysis.type = AnalysisType::dynamics;
+  s.analysis.duration = 1e-3;
+  s.analysis.steps = 1;
+  BuiltScene built = built_of(s);
+  SceneJudge judge(s, built);
+  std::vector<Vec3> v(built.world.rest_positions(built.bodies[0]).size());
+  v.back() = {1e-12, 0, 0};
+  REQUIRE(built.world.set_velocities(built.bodies[0], v).ok());
+  CHECK(!judge.accepted(built, {}));
+  v.back() = {1e-2, 0, 0};
+  REQUIRE(built.world.set_velocities(built.bodies[0], v).ok());
+  CHECK(judge.accepted(built, {}).has_value());
+}
+
 TEST_CASE("the judge finds rows, volumes, supports and obstacles that are not met") {
   const auto taller = [](const Vec3& X) { return Vec3{X.x, X.y, 1.01 * X.z}; };
   CHECK(kind_of(block(Element::tet4, MaterialLaw::stable_neo_hookean, 0.5), taller) == "rows");
