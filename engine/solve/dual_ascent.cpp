@@ -231,13 +231,16 @@ bool DualAscent::climb(std::span<double> lambda, SaddleReport& report) {
   if (ascent_.conjugate) conjugate();
   if (!kkt_.apply_dual(direction_, image_, seconds_)) return false;
   if (ascent_.conjugate) std::copy(image_.begin(), image_.end(), image_before_.begin());
-  double curvature = 0;
+  double curvature = 0, size = 0;
   for (std::size_t r = 0; r < direction_.size(); ++r) {
     up += direction_[r] * theta_[r];
     curvature += direction_[r] * image_[r];
+    size += direction_[r] * kkt_.dual_preconditioner()[r] * direction_[r];
   }
   ++report.dual_steps;
-  const double omega = curvature > 0 ? up / curvature : 0;
+  // Without curvature it is multipliers of rows that depend on each other, which do nothing.
+  constexpr double no_curvature = 1e-13;
+  const double omega = curvature > no_curvature * size ? up / curvature : 0;
   for (std::size_t r = 0; r < direction_.size(); ++r) {
     if (any_clamped_ && clamped_[r])
       lambda[r] = effective_[r];

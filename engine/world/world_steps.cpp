@@ -305,10 +305,14 @@ SaddleReport World::Impl::rescue(double h) {
     total = last;
     if (found) {
       const Surroundings around = look_around(x_trial, true);
-      if (around.changed || around.passing > 0)
+      if (around.changed || around.passing > 0) {
         total.status = SaddleStatus::passed_through;
-      else if (admissible(h, problem, total))
+        // Stencils looked at positions that are not to be.
+        const auto memory = std::span<const double>(state.extra).first(at(system->memory()));
+        if (auto back = restore_stencils(memory); !back) total.message = back.error();
+      } else if (admissible(h, problem, total)) {
         accept(h, predicted);
+      }
       return total;
     }
     if (last.status == SaddleStatus::cancelled || inertia <= negligible) return total;

@@ -42,6 +42,18 @@ std::string unreadable(const std::string& text) {
   return {};
 }
 
+// A world before a step: what one that is not taken must leave as it is, results included.
+struct Before {
+  explicit Before(const World& world)
+      : time(world.time()),
+        hash(world.state_hash()),
+        row(world.constitutive_residual()),
+        elastic(world.elastic_energy()) {}
+  double time;
+  std::uint64_t hash;
+  double row, elastic;
+};
+
 class ChaosRun {
  public:
   ChaosRun(const SceneDef& scene, const ChaosDrive& drive, BuiltScene& built, ChaosOutcome& out)
@@ -62,7 +74,7 @@ class ChaosRun {
     return broken(Finding{std::move(kind), std::move(text)});
   }
   // True when the run is over.
-  bool take(const StepReport& report, double before, std::uint64_t hash);
+  bool take(const StepReport& report, const Before& before);
   bool reload(int step);
   void compare_reloaded(const StepReport& report, int step);
   void after_budget(const StepReport& report);
@@ -141,10 +153,10 @@ void ChaosRun::after_budget(const StepReport& report) {
   broken("spoiled by a budget", "after steps with a budget: " + report.reason);
 }
 
-bool ChaosRun::take(const StepReport& report, double before, std::uint64_t hash) {
+bool ChaosRun::take(const StepReport& report, const Before& before) {
   World& world = built_.world;
   out_.iterations += report.iterations;
-  const bool stayed = world.time() == before;
+  const bool stayed = world.time() == before.time;
   if (const std::string why = unreadable(report.reason + " " + report.warning); !why.empty())
     return broken("message", why);
   if (report.status != StepStatus::converged && report.reason.empty())
@@ -157,13 +169,23 @@ bool ChaosRun::take(const StepReport& report, double before, std::uint64_t hash)
     return broken(judge_.finite(built_));
   }
   const bool given_back = report.status == StepStatus::rejected && stayed && budgeted(out_.steps);
-  if (report.status != StepStatus::converged && stayed && world.state_hash() != hash)
-    return broken("changed state", "a step that was not taken changed the state: " + report.reason);
+  if (report.status != StepStatus::converged && stayed) {
+    const Before now(world);
+    if (now.hash != before.hash)
+      return broken("changed state", "a step that was not taken changed the state: " + report.reason);
+    if (now.row != before.row || now.elastic != before.elastic) {
+      return broken("changed state",
+                    "a step that was not taken changed results of the state: residual of rows " +
+                        number(before.row) + " to " + number(now.row) + ", elastic energy " +
+                        number(before.elastic) + " to " + number(now.elastic) + " J: " + report.reason);
+    }
+  }
   // In full, to the rounding of its parts.
-  const bool whole = std::abs(world.time() - before - plan_.h) <= 1e-9 * (plan_.h + std::abs(before));
+  const bool whole =
+      std::abs(world.time() - before.time - plan_.h) <= 1e-9 * (plan_.h + std::abs(before.time));
   if (report.status == StepStatus::converged && !whole && !scene_.analysis.path_step) {
     return broken("no step", "a step of " + std::to_string(plan_.h) + " converged and the time went from " +
-                                 std::to_string(before) + " to " + std::to_string(world.time()));
+                                 std::to_string(before.time) + " to " + std::to_string(world.time()));
   }
   if (!stayed && broken(judge_.accepted(built_, warnings_of(world, report)))) return true;
   if (report.status == StepStatus::converged) {
@@ -211,8 +233,7 @@ void ChaosRun::march() {
   out_.verdict = ChaosVerdict::solved;
   for (int step = 0; step < plan_.steps; ++step) {
     if (reload(step)) return;
-    const double before = world.time();
-    const std::uint64_t hash = world.state_hash();
+    const Before before(world);
     if (drive_.cancels && drive_.wall_seconds > 0 && seconds_since(start) > drive_.wall_seconds)
       world.cancel();
     const auto step_start = Clock::now();
@@ -232,7 +253,7 @@ void ChaosRun::march() {
              std::to_string(report.iterations) + " iterations within a budget of " + std::to_string(allowed));
       return;
     }
-    const bool over = take(report, before, hash);
+    const bool over = take(report, before);
     const SceneJudge::Inversion found = judge_.inversion(world);
     out_.min_J = found.min_J;
     out_.inverted = static_cast<long>(found.inverted);

@@ -21,6 +21,8 @@ namespace {
 
 // 1 / (W D) of augmented rows without compliance: smaller takes fewer iterations and costs digits of A.
 constexpr double softness = 1e-2;
+// Curvature along a direction, in units of the preconditioner, that rounding alone may leave.
+constexpr double no_curvature = 1e-13;
 
 }  // namespace
 
@@ -130,8 +132,11 @@ bool Kkt::solve_dual(std::span<const double> row_rhs, StageSeconds& seconds) {
        ++iteration) {
     ok = !interrupted() && apply_dual(cg_p_, cg_q_, seconds);
     const double curvature = dot_rows(cg_p_, cg_q_);
-    // Not positive: A is not, and its factors could not tell.
-    if (!ok || !(curvature > 0)) break;
+    double size = 0;
+    for (const Index r : rows) size += cg_p_[at(r)] * preconditioner_[at(r)] * cg_p_[at(r)];
+    // Negative: A is not positive definite, and its factors could not tell. None: multipliers of rows that
+    // depend on each other, which do nothing, and would go anywhere.
+    if (!ok || !(curvature > no_curvature * size)) break;
     const double alpha = rho / curvature;
     for (const Index r : rows) {
       cg_x_[at(r)] += alpha * cg_p_[at(r)];
