@@ -11,6 +11,7 @@
 #include "engine/solve/kkt/kkt.h"
 #include "engine/solvers/linear_solver.h"
 #include "engine/world/recovery.h"
+#include "isochor/effects/effect.h"
 
 namespace residual_newton {
 

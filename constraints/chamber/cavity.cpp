@@ -1,3 +1,5 @@
+#include "isochor/effects/cavity.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>

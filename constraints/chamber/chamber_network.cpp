@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/text.h"
+#include "isochor/effects/cavity.h"
 
 namespace isochor {
 

@@ -5,6 +5,7 @@
 #include "constraints/layer/surface_strain.h"
 #include "engine/base/text.h"
 #include "engine/scene/builder.h"
+#include "isochor/effects/layer.h"
 
 namespace isochor {
 

@@ -1,3 +1,5 @@
+#include "isochor/effects/cable.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>

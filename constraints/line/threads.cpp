@@ -7,6 +7,8 @@
 
 #include "constraints/stencil/segment_pool.h"
 #include "engine/base/text.h"
+#include "isochor/effects/cable.h"
+#include "isochor/effects/layer.h"
 
 namespace isochor {
 

@@ -3,6 +3,7 @@
 
 #include "engine/base/text.h"
 #include "engine/scene/builder.h"
+#include "isochor/effects/load.h"
 
 namespace isochor {
 

@@ -2,6 +2,7 @@
 
 #include "constraints/stencil/surface_pool.h"
 #include "engine/scene/builder.h"
+#include "isochor/effects/load.h"
 
 namespace isochor {
 

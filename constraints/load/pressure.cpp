@@ -6,6 +6,7 @@
 #include "constraints/stencil/surface_pool.h"
 #include "engine/base/fingerprint.h"
 #include "engine/scene/builder.h"
+#include "isochor/effects/load.h"
 
 namespace isochor {
 

@@ -2,6 +2,7 @@
 
 #include "constraints/stencil/point_pool.h"
 #include "engine/base/text.h"
+#include "isochor/effects/support.h"
 
 namespace isochor {
 

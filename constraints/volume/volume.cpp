@@ -1,3 +1,5 @@
+#include "isochor/effects/volume.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>

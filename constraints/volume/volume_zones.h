@@ -3,6 +3,7 @@
 
 #include "constraints/volume/volume_rows.h"
 #include "engine/scene/builder.h"
+#include "isochor/effects/volume.h"
 
 namespace isochor {
 

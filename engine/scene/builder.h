@@ -11,8 +11,11 @@
 #include "engine/elements/reference_element.h"
 #include "engine/system/state.h"
 #include "engine/system/system.h"
-#include "isochor/effects.h"
-#include "isochor/world.h"
+#include "isochor/bodies.h"
+#include "isochor/curves.h"
+#include "isochor/ids.h"
+#include "isochor/measures.h"
+#include "isochor/selection.h"
 
 namespace isochor {
 

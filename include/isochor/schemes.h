@@ -1,7 +1,7 @@
 // Time schemes for WorldOptions::scheme.
 #pragma once
 
-#include "isochor/world.h"
+#include "isochor/options.h"
 
 namespace isochor {
 

@@ -8,6 +8,7 @@
 #include "engine/scene/builder.h"
 #include "engine/solve/newton/newton.h"
 #include "engine/system/system.h"
+#include "isochor/effects.h"
 
 namespace test {
 

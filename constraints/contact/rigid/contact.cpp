@@ -1,4 +1,5 @@
-#include "isochor/contact.h"
+
+#include "isochor/effects/contact.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,6 +9,7 @@
 #include "constraints/contact/shape/moved_solid.h"
 #include "constraints/stencil/segment_pool.h"
 #include "engine/base/text.h"
+#include "isochor/effects/contact.h"
 
 namespace isochor {
 

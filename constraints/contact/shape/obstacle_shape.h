@@ -2,7 +2,7 @@
 #pragma once
 
 #include "constraints/contact/shape/solid.h"
-#include "isochor/contact.h"
+#include "isochor/effects/contact.h"
 
 namespace isochor {
 

@@ -4,7 +4,7 @@
 #include "constraints/contact/contact_rows.h"
 #include "constraints/contact/surface/edge_contact_pool.h"
 #include "engine/scene/builder.h"
-#include "isochor/contact.h"
+#include "isochor/effects/contact.h"
 
 namespace isochor {
 

@@ -11,7 +11,7 @@
 #include "constraints/stencil/surface_nodes.h"
 #include "engine/base/text.h"
 #include "engine/scene/builder.h"
-#include "isochor/contact.h"
+#include "isochor/effects/contact.h"
 
 namespace isochor {
 
