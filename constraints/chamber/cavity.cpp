@@ -8,7 +8,7 @@
 
 #include "constraints/chamber/chamber_network.h"
 #include "constraints/stencil/embedding.h"
-#include "constraints/stencil/surface_pool.h"
+#include "constraints/stencil/face_pool.h"
 #include "engine/base/text.h"
 #include "engine/mesh/cell_shape.h"
 #include "engine/scene/builder.h"

@@ -2,7 +2,7 @@
 // are rows of one pool, so that valves may couple any two.
 #pragma once
 
-#include "constraints/stencil/surface_pool.h"
+#include "constraints/stencil/face_pool.h"
 #include "engine/scene/builder.h"
 
 namespace isochor {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "constraints/layer/surface_strain.h"
+#include "constraints/layer/face_strain.h"
 #include "engine/base/text.h"
 #include "engine/scene/builder.h"
 #include "isochor/effects/layer.h"
@@ -13,15 +13,15 @@ namespace {
 
 // Phi = m sqrt(1 + gamma m^2 / 6) with m = sqrt(q) - 1, so that Phi^2 / 2 is the penalty U(area ratio;
 // gamma).
-class AreaPool final : public SurfaceStrainPool {
+class AreaPool final : public FaceStrainPool {
  public:
   AreaPool(std::string name, std::size_t nodes_per_face, std::span<const Index> faces,
            std::span<const Vec3> rest, double gamma)
-      : SurfaceStrainPool(std::move(name), Gives::function, nodes_per_face, faces, rest), gamma_(gamma) {}
+      : FaceStrainPool(std::move(name), Gives::function, nodes_per_face, faces, rest), gamma_(gamma) {}
 
  protected:
-  SurfaceResponse respond(double, double d) const override {
-    SurfaceResponse w;
+  FaceResponse respond(double, double d) const override {
+    FaceResponse w;
     if (!(d > -1)) {
       w.value = std::numeric_limits<double>::infinity();
       return w;

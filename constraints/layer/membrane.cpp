@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "constraints/layer/surface_strain.h"
+#include "constraints/layer/face_strain.h"
 #include "engine/base/text.h"
 #include "engine/scene/builder.h"
 #include "isochor/effects/layer.h"
@@ -15,17 +15,17 @@ namespace {
 // vanishes at a stretch of area ratio^(-c), c = nu/(1 - nu). What is left per thickness is
 // mu/2 (tr C - 2) + mu/(2 c) (q^(-c) - 1); nu = 0.5 is the incompressible membrane, c = 0 the limit
 // -mu/2 log q.
-class MembranePool final : public SurfaceStrainPool {
+class MembranePool final : public FaceStrainPool {
  public:
   MembranePool(std::string name, std::size_t nodes_per_face, std::span<const Index> faces,
                std::span<const Vec3> rest, double mu_thickness, double c)
-      : SurfaceStrainPool(std::move(name), Gives::energy, nodes_per_face, faces, rest),
+      : FaceStrainPool(std::move(name), Gives::energy, nodes_per_face, faces, rest),
         mu_(mu_thickness),
         c_(c) {}
 
  protected:
-  SurfaceResponse respond(double trace_minus_2, double d) const override {
-    SurfaceResponse w;
+  FaceResponse respond(double trace_minus_2, double d) const override {
+    FaceResponse w;
     w.value = std::numeric_limits<double>::infinity();
     if (!(d > -1)) return w;
     const double log_q = std::log1p(d), volumetric = c_ > 0 ? std::expm1(-c_ * log_q) / c_ : -log_q;

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "constraints/stencil/surface_pool.h"
+#include "constraints/stencil/face_pool.h"
 #include "engine/scene/builder.h"
 #include "isochor/effects/load.h"
 

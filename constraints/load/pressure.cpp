@@ -2,8 +2,8 @@
 #include <cmath>
 #include <map>
 
+#include "constraints/stencil/face_pool.h"
 #include "constraints/stencil/surface_nodes.h"
-#include "constraints/stencil/surface_pool.h"
 #include "engine/base/fingerprint.h"
 #include "engine/scene/builder.h"
 #include "isochor/effects/load.h"

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "constraints/stencil/surface_pool.h"
+#include "constraints/stencil/face_pool.h"
 #include "engine/mesh/cell_shape.h"
 
 namespace isochor {

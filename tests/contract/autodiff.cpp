@@ -4,9 +4,9 @@
 #include <functional>
 
 #include "catch.h"
-#include "constraints/layer/surface_strain.h"
+#include "constraints/layer/face_strain.h"
 #include "constraints/stencil/segment_pool.h"
-#include "constraints/stencil/surface_pool.h"
+#include "constraints/stencil/face_pool.h"
 #include "contract/formulas.h"
 #include "contract/scene_probe.h"
 
@@ -198,7 +198,7 @@ TEST_CASE("skins have the derivatives of their formulas") {
   {
     constexpr double gamma = 3;  // as in the registry
     const SceneProbe scene(find_case("tet4, epidermis of stiffness " + std::to_string(2.0)));
-    const auto pools = pools_of<SurfaceStrainPool>(scene);
+    const auto pools = pools_of<FaceStrainPool>(scene);
     REQUIRE(pools.size() == 1);
     compare(scene, *pools[0], [&](Index s, const std::vector<Point>& x) {
       std::vector<Vec3> X;
@@ -211,7 +211,7 @@ TEST_CASE("skins have the derivatives of their formulas") {
   }
   for (const double nu : {0.0, 0.3, 0.5}) {
     const SceneProbe scene(find_case("tet4, membrane, nu = " + std::to_string(nu)));
-    const auto pools = pools_of<SurfaceStrainPool>(scene);
+    const auto pools = pools_of<FaceStrainPool>(scene);
     REQUIRE(pools.size() == 1);
     compare(scene, *pools[0], [&](Index s, const std::vector<Point>& x) {
       std::vector<Vec3> X;

@@ -149,7 +149,7 @@ void add_cavities(std::vector<SceneCase>& out) {
         const auto smaller = [](const Vec3& p) { return wavy((1.0 / 3) * p); };
         SceneCase c{name + (open ? ", open" : ", closed") + ", chamber control " +
                         std::to_string(static_cast<int>(control)),
-                    {"constraints/cavity", "constraints/surface_pool"},
+                    {"constraints/cavity", "constraints/face_pool"},
                     mapped(hollow_box(open, cells_of(element)), smaller),
                     element,
                     {{"", material(0.3), 1000}},
@@ -167,7 +167,7 @@ void add_pressures(std::vector<SceneCase>& out) {
     isochor::PressureDef def;
     def.amount = Curve::constant(0.3);
     SceneCase c{name,
-                {"constraints/pressure", "constraints/surface_nodes", "constraints/surface_pool"},
+                {"constraints/pressure", "constraints/surface_nodes", "constraints/face_pool"},
                 {},
                 element,
                 {{"", material(0.3), 1000}},
@@ -216,7 +216,7 @@ void add_supports_and_loads(std::vector<SceneCase>& out) {
 
   SceneCase loads = c;
   loads.name = "loads";
-  loads.covers = {"constraints/loads", "constraints/surface_pool"};
+  loads.covers = {"constraints/loads", "constraints/face_pool"};
   isochor::TractionDef pull;
   pull.surface = "x1";
   pull.traction = {0.1, 0, 0.02};
@@ -255,7 +255,7 @@ void add_skins(std::vector<SceneCase>& out) {
       skin.stiffness = stiffness;
       skin.gamma = 3;
       c.name = name + ", epidermis of stiffness " + std::to_string(stiffness);
-      c.covers = {"constraints/epidermis", "constraints/surface_strain"};
+      c.covers = {"constraints/epidermis", "constraints/face_strain"};
       c.effects = {isochor::epidermis(skin)};
       if (stiffness < 10 || element == Element::tet10) out.push_back(c);
     }
@@ -266,7 +266,7 @@ void add_skins(std::vector<SceneCase>& out) {
       skin.thickness = 0.01;
       skin.poisson = poisson;
       c.name = name + ", membrane, nu = " + std::to_string(poisson);
-      c.covers = {"constraints/membrane", "constraints/surface_strain"};
+      c.covers = {"constraints/membrane", "constraints/face_strain"};
       c.effects = {isochor::membrane(skin)};
       out.push_back(c);
     }

@@ -2,7 +2,7 @@
 // needs is computed, and errors in L2 are compared between two meshes.
 #include <cmath>
 
-#include "constraints/stencil/surface_pool.h"
+#include "constraints/stencil/face_pool.h"
 #include "engine/elements/material.h"
 #include "engine/elements/material_model.h"
 #include "engine/elements/reference_element.h"
