@@ -3,7 +3,7 @@
 #include <random>
 
 #include "constraints/contact/surface/crossing.h"
-#include "constraints/contact/surface/skin_edges.h"
+#include "constraints/contact/surface/surface_edges.h"
 #include "isochor/contact.h"
 #include "support/hyper_dual.h"
 #include "support/worlds.h"
@@ -473,11 +473,11 @@ TEST_CASE("edges that are past each other at the start are refused, or pushed ap
   CHECK(of(resolved, "smallest_gap") > -1e-3);
 }
 
-TEST_CASE("edges of a skin are those that bulge between faces, on both sides") {
+TEST_CASE("edges of a surface are those that bulge between faces, on both sides") {
   BoxMeshDef def;
   def.divisions = {2, 2, 2};
   const Mesh cube = test::value(box_mesh(def));
-  std::array<SkinFaces, 2> sides;
+  std::array<SurfaceFaces, 2> sides;
   for (const auto& surface : cube.surfaces) {
     for (std::size_t f = 0; f < surface.faces.size(); f += 3) {
       std::array<Index, 3> c{surface.faces[f], surface.faces[f + 1], surface.faces[f + 2]};
@@ -492,14 +492,14 @@ TEST_CASE("edges of a skin are those that bulge between faces, on both sides") {
     for (Vec3& p : x) p.z *= z;
     return x;
   };
-  const Skin skin(sides, cube.nodes);
-  const SkinEdges edges(skin, cube.nodes);
+  const ContactSurface surface(sides, cube.nodes);
+  const SurfaceEdges edges(surface, cube.nodes);
   CHECK(edges.count() == 24);
   double area = 0;
   for (Index e = 0; e < edges.count(); ++e) area += edges[e].area;
   CHECK(area == Approx(24.0 * 2 * 0.125 / 3));
   // Twelve bars meet at no place of a single cube.
-  std::vector<SkinEdges::Finding> found(24);
+  std::vector<SurfaceEdges::Finding> found(24);
   const std::vector<Index> none(24, -1);
   edges.search(cube.nodes, flat(0.9), 0.3, 0, none, nullptr, found);
   for (const auto& f : found) CHECK((f.deepest < 0 && f.crossed < 0));

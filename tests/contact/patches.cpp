@@ -2,8 +2,8 @@
 #include <cmath>
 #include <random>
 
+#include "constraints/contact/surface/contact_surface.h"
 #include "constraints/contact/surface/patch_distance.h"
-#include "constraints/contact/surface/skin.h"
 #include "engine/math/triangle.h"
 #include "support/worlds.h"
 
@@ -192,19 +192,19 @@ TEST_CASE("a point goes through a moving triangle from the front when it does") 
 
 TEST_CASE("points of a surface stand for its area, and integrate cubics over it") {
   std::vector<Vec3> x{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}};
-  const Skin skin({SkinFaces{{0, 1, 2, 0, 2, 3}, 3}, {}}, x);
+  const ContactSurface surface({SurfaceFaces{{0, 1, 2, 0, 2, 3}, 3}, {}}, x);
   double area = 0, cubic = 0;
-  for (const SkinPoint& p : skin.points()) {
+  for (const SurfacePoint& p : surface.points()) {
     const Vec3 q = p.position(x);
     area += p.area;
     cubic += p.area * q.x * q.x * q.y;
   }
   CHECK(area == Approx(2.0));
   CHECK(cubic == Approx(8.0 / 3 * 0.5));
-  CHECK(skin.points().size() == 4 + 5 + 2);
+  CHECK(surface.points().size() == 4 + 5 + 2);
   // Folded at a right angle, the corners and the middle of the edge between the two belong to both.
   x[3] = {1, 0.5, 2};
-  CHECK(Skin({SkinFaces{{0, 1, 2, 0, 2, 3}, 3}, {}}, x).points().size() == 4 + 5 + 2 + 3);
+  CHECK(ContactSurface({SurfaceFaces{{0, 1, 2, 0, 2, 3}, 3}, {}}, x).points().size() == 4 + 5 + 2 + 3);
 }
 
 TEST_CASE("the search finds what brute force finds") {
@@ -213,7 +213,7 @@ TEST_CASE("the search finds what brute force finds") {
   const Mesh lower = test::value(box_mesh(def));
   std::vector<Vec3> x = lower.nodes;
   const auto count = static_cast<Index>(x.size());
-  std::array<SkinFaces, 2> sides;
+  std::array<SurfaceFaces, 2> sides;
   for (const auto& surface : lower.surfaces) {
     for (std::size_t f = 0; f < surface.faces.size(); f += 3) {
       std::array<Index, 3> c{surface.faces[f], surface.faces[f + 1], surface.faces[f + 2]};
@@ -226,23 +226,23 @@ TEST_CASE("the search finds what brute force finds") {
     }
   }
   for (Index i = 0; i < count; ++i) x.push_back(x[static_cast<std::size_t>(i)] + Vec3{0.13, 0.07, 1.02});
-  const Skin skin(sides, x);
+  const ContactSurface surface(sides, x);
   std::vector<Vec3> moved = x;
   for (std::size_t i = static_cast<std::size_t>(count); i < x.size(); ++i)
     moved[i] += Vec3{0.01 * std::sin(9 * moved[i].x), 0, -0.05 + 0.01 * std::cos(7 * moved[i].y)};
-  std::vector<Skin::Finding> found(skin.points().size());
+  std::vector<ContactSurface::Finding> found(surface.points().size());
   const double reach = 0.2;
   const std::vector<Index> none(found.size(), -1);
-  skin.search(x, moved, reach, none, nullptr, found);
+  surface.search(x, moved, reach, none, nullptr, found);
   Index near = 0, crossed = 0;
   for (Index s = 0; s < static_cast<Index>(found.size()); ++s) {
     double best = reach;
     double earliest = 2;
-    const SkinPoint& p = skin.points()[at(s)];
+    const SurfacePoint& p = surface.points()[at(s)];
     const Vec3 p0 = p.position(x), p1 = p.position(moved);
-    for (Index t = 0; t < skin.triangles(); ++t) {
-      if ((t < skin.triangles() / 2 ? 0 : 1) == p.side || !skin.facing(s, t, moved)) continue;
-      const auto& c = skin.corners(t);
+    for (Index t = 0; t < surface.triangles(); ++t) {
+      if ((t < surface.triangles() / 2 ? 0 : 1) == p.side || !surface.facing(s, t, moved)) continue;
+      const auto& c = surface.corners(t);
       const std::array<Vec3, 3> now{moved[at(c[0])], moved[at(c[1])], moved[at(c[2])]};
       const TrianglePoint place = nearest_on_triangle(p1, now[0], now[1], now[2]);
       const Vec3 r = p1 - (place.weight[0] * now[0] + place.weight[1] * now[1] + place.weight[2] * now[2]);

@@ -118,7 +118,7 @@ void add_chambers(std::vector<SceneCase>& out, Element element) {
     leak.from = def.name;
     leak.conductance = 0.1;
     SceneCase c{"chamber with content, control " + std::to_string(static_cast<int>(control)),
-                {"constraints/cavity", "constraints/chamber_network", "constraints/surface_pool"},
+                {"constraints/cavity", "constraints/chamber_network", "constraints/face_pool"},
                 mapped(hollow_box(true, type), smaller),
                 element,
                 {{"", soft(), 1000}},
@@ -170,7 +170,7 @@ void add_contacts(std::vector<SceneCase>& out, Element element) {
     if (element != Element::tet4) continue;
     def.coupling = FrictionCoupling::coupled;
     c.name += ", coupled";
-    c.covers = {"constraints/contact_coupling"};
+    c.covers = {"constraints/contact_touch"};
     c.effects.back() = contact(def);
     out.push_back(c);
   }
@@ -187,7 +187,8 @@ void add_surface_contacts(std::vector<SceneCase>& out, Element element) {
     def.initial_overlap = InitialOverlap::resolve;
     SceneCase c = on_block(friction > 0 ? "surface contact with friction" : "surface contact", element,
                            {"constraints/surface_contact", "constraints/surface_contact_pool",
-                            "constraints/skin", "constraints/patch_distance", "constraints/surface_coupling"},
+                            "constraints/contact_surface", "constraints/patch_distance",
+                            "constraints/surface_touch", "constraints/pairing", "constraints/contact_effect"},
                            surface_contact(def));
     Vec3 low = c.mesh.nodes.front(), high = low;
     for (const Vec3& p : c.mesh.nodes) {
@@ -223,7 +224,7 @@ void add_crossed_edges(std::vector<SceneCase>& out, Element element) {
     def.initial_overlap = InitialOverlap::resolve;
     SceneCase c = on_block(friction > 0 ? "crossed edges with friction" : "crossed edges", element,
                            {"constraints/edge_contact", "constraints/edge_contact_pool",
-                            "constraints/edge_distance", "constraints/skin_edges"},
+                            "constraints/edge_distance", "constraints/surface_edges"},
                            surface_contact(def));
     c.mesh = bar(false);
     c.more_bodies = {bar(true)};
@@ -232,7 +233,7 @@ void add_crossed_edges(std::vector<SceneCase>& out, Element element) {
     if (friction == 0) continue;
     def.coupling = FrictionCoupling::coupled;
     c.name += ", coupled";
-    c.covers = {"constraints/edge_coupling"};
+    c.covers = {"constraints/edge_touch"};
     c.effects.back() = surface_contact(def);
     out.push_back(c);
     def.friction = 0.003;

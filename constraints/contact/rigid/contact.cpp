@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "constraints/contact/bouncing_rows.h"
-#include "constraints/contact/contact_rows.h"
+#include "constraints/contact/contact_effect.h"
+#include "constraints/contact/rigid/bouncing_rows.h"
 #include "constraints/contact/rigid/contact_pool.h"
 #include "constraints/contact/rigid/flush_nodes.h"
 #include "constraints/contact/rigid/rigid_body.h"
@@ -30,36 +30,23 @@ class ContactInstance final : public EffectInstance {
     const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
     const bool rubs = pool_->memory() > 0;
     const auto memory = memory_of(c);
-    Vec3 force{};
-    double normal = 0, tangential = 0, area = 0, pressure = 0, gap = std::numeric_limits<double>::infinity();
-    double depth = 0;
+    ContactTotals sum;
     for (Index s = 0; s < pool_->stencils(); ++s) {
-      gap = std::min(gap, pool_->gap(s, frame, c.state.x));
+      sum.gap = std::min(sum.gap, pool_->gap(s, frame, c.state.x));
       if (!(lambda[at(s)] < 0)) continue;
-      normal -= lambda[at(s)];
-      area += rows_->area[at(s)];
-      depth = std::max(depth, rows_->depth(s, lambda[at(s)]) / std::sqrt(rows_->area[at(s)]));
-      pressure = std::max(pressure, -lambda[at(s)] / rows_->area[at(s)]);
+      const double area = rows_->area[at(s)];
+      sum.normal -= lambda[at(s)];
+      sum.area += area;
+      sum.depth = std::max(sum.depth, rows_->depth(s, lambda[at(s)]) / std::sqrt(area));
+      sum.pressure = std::max(sum.pressure, -lambda[at(s)] / area);
       const Distance d = distance_to(pool_->shape(), pool_->own_place(s, frame, c.state.x));
-      force -= lambda[at(s)] * (frame.A * d.normal);
+      sum.force -= lambda[at(s)] * (frame.A * d.normal);
       if (!rubs) continue;
       const Vec3 f = pool_->kept_pull(s, memory);
-      tangential += std::sqrt(dot(f, f));
-      force -= frame.A * f;
+      sum.tangential += std::sqrt(dot(f, f));
+      sum.force -= frame.A * f;
     }
-    const std::string name(rows_->name());
-    const auto put = [&](const char* quantity, const char* unit, double value) {
-      out.push_back({name, "contact", quantity, unit, value});
-    };
-    put("force_x", "N", force.x);
-    put("force_y", "N", force.y);
-    put("force_z", "N", force.z);
-    put("normal_force", "N", normal);
-    put("friction_force", "N", tangential);
-    put("contact_area", "m2", area);
-    put("largest_pressure", "Pa", pressure);
-    put("smallest_gap", "m", gap);
-    put("depth_over_face", "", depth);
+    add_gauges(rows_->name(), sum, out);
   }
 
   bool surface_forces(const GaugeContext& c, SurfaceForces& f) const override {
@@ -102,18 +89,12 @@ class ContactEffect final : public EffectSource {
 
   Result<void> check() const override {
     if (auto r = check_obstacle(def_.obstacle); !r) return Error{who() + r.error()};
-    for (const auto& [key, value, unit] : {std::tuple{"compliance", def_.compliance, "m/Pa"},
-                                           {"friction", def_.friction, ""},
-                                           {"static_friction", def_.static_friction, ""},
-                                           {"stick_stiffness", def_.stick_stiffness, "Pa/m"}}) {
-      if (value >= 0 && std::isfinite(value)) continue;
-      return Error{who() + key + " = " + number(value) + (*unit ? " " : "") + unit +
-                   "; it must be zero or positive"};
-    }
-    if (def_.static_friction > 0 && def_.static_friction < def_.friction) {
-      return Error{who() + "static_friction = " + number(def_.static_friction) + " with friction = " +
-                   number(def_.friction) + "; it must not be the smaller one, or 0 for the same"};
-    }
+    const std::array<ContactNumber, 4> numbers{{{"compliance", def_.compliance, "m/Pa"},
+                                                {"friction", def_.friction, ""},
+                                                {"static_friction", def_.static_friction, ""},
+                                                {"stick_stiffness", def_.stick_stiffness, "Pa/m"}}};
+    if (auto r = check_numbers(who(), numbers); !r) return r;
+    if (auto r = check_static_friction(who(), def_.friction, def_.static_friction); !r) return r;
     if (!(def_.restitution >= 0 && def_.restitution <= 1)) {
       return Error{who() + "restitution = " + number(def_.restitution) +
                    "; it must be between 0 and 1, what more would add energy in every impact"};
@@ -127,10 +108,7 @@ class ContactEffect final : public EffectSource {
                    " with compliance = " + number(def_.compliance) +
                    " m/Pa; a soft layer bounces by its own elasticity: leave one of them 0"};
     }
-    if (!(def_.resolve_time > 0)) {
-      return Error{who() + "resolve_time = " + number(def_.resolve_time) + " s; it must be positive"};
-    }
-    return {};
+    return check_resolve_time(who(), def_.resolve_time);
   }
 
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
@@ -212,29 +190,18 @@ class ContactEffect final : public EffectSource {
 
   Result<void> find_overlap(const Builder& builder, const ContactPool& pool, ContactRows& rows) const {
     const ContactFrame frame = pool.frame(0, builder.rest());
-    Index worst = -1, inside = 0;
-    double deepest = -1e-9 * builder.length();
-    std::vector<double> overlap(rows.area.size(), 0.0);
-    for (Index s = 0; s < pool.stencils(); ++s) {
-      const double gap = pool.gap(s, frame, builder.rest());
-      overlap[at(s)] = std::min(gap, 0.0);
-      if (gap < -1e-9 * builder.length()) ++inside;
-      if (gap >= deepest) continue;
-      deepest = gap;
-      worst = pool.nodes()[s][0];
-    }
-    if (worst < 0) return {};
-    if (def_.initial_overlap == InitialOverlap::resolve) {
-      rows.overlap = std::move(overlap);
-      return {};
-    }
+    std::vector<double> gap(rows.area.size());
+    for (Index s = 0; s < pool.stencils(); ++s) gap[at(s)] = pool.gap(s, frame, builder.rest());
+    const Overlap found = take_overlap(gap, 0, builder.length(), rows);
+    if (found.worst < 0 || def_.initial_overlap == InitialOverlap::resolve) return {};
+    const Index worst = pool.nodes()[found.worst][0];
     const std::string what = def_.rigid.empty()
                                  ? " nodes of body \"" + builder.body(def_.body).name +
                                        "\" are inside the obstacle at the start, node " +
                                        std::to_string(worst - builder.body(def_.body).first_node)
                                  : " points of rigid body \"" + def_.rigid +
                                        "\" are inside the obstacle at the start, the deepest";
-    return Error{who() + std::to_string(inside) + what + " by " + number(-deepest) +
+    return Error{who() + std::to_string(found.count) + what + " by " + number(-found.deepest) +
                  " m; move one of the two, or set initial_overlap to resolve to have them pushed out"};
   }
 

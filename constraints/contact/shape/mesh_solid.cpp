@@ -28,10 +28,10 @@ void add_outer(Mat3& m, double s, const Vec3& a) {
 }
 
 // Whether the way from `start` by fractions 0 to 1 of `way` meets the box.
-bool meets_box(const Vec3& start, const Vec3& way, const Box& box, double skin) {
+bool meets_box(const Vec3& start, const Vec3& way, const Box& box, double margin) {
   double from = 0, to = 1;
   for (int k = 0; k < 3; ++k) {
-    const double a = box.low[k] - skin - start[k], b = box.high[k] + skin - start[k];
+    const double a = box.low[k] - margin - start[k], b = box.high[k] + margin - start[k];
     if (way[k] == 0) {
       if (a > 0 || b < 0) return false;
       continue;
@@ -189,7 +189,7 @@ Distance MeshSolid::distance(const Vec3& y) const {
 
 std::size_t MeshSolid::crossings(const Vec3& y0, const Vec3& y1, std::span<double> out) const {
   const Vec3 way = y1 - y0;
-  const double skin = 1e-12 * extent_;
+  const double margin = 1e-12 * extent_;
   std::size_t found = 0;
   const auto add = [&](double s) {
     // One crossing, though an edge belongs to two triangles.
@@ -215,7 +215,7 @@ std::size_t MeshSolid::crossings(const Vec3& y0, const Vec3& y1, std::span<doubl
     if (u >= -slack && v >= -slack && u + v <= 1 + slack && s >= 0 && s <= 1) add(s);
   };
   tree_.visit(
-      boxes_, [&](const Box& box) { return meets_box(y0, way, box, skin); }, cross_triangle);
+      boxes_, [&](const Box& box) { return meets_box(y0, way, box, margin); }, cross_triangle);
   return found;
 }
 

@@ -15,10 +15,10 @@ constexpr std::size_t kMostCrossings = 64;
 
 // How far it is from a point of the surface straight through the solid to its other side.
 double thickness(const Solid& solid, const Vec3& p, const Vec3& normal, double extent) {
-  const double skin = 1e-7 * extent;
-  const Vec3 start = p - skin * normal, end = p - extent * normal;
+  const double margin = 1e-7 * extent;
+  const Vec3 start = p - margin * normal, end = p - extent * normal;
   std::array<double, 1> met{};
-  return solid.crossings(start, end, met) > 0 ? skin + met[0] * (extent - skin) : extent;
+  return solid.crossings(start, end, met) > 0 ? margin + met[0] * (extent - margin) : extent;
 }
 
 }  // namespace

@@ -1,9 +1,8 @@
 // The rows of surface contact between edges that cross.
 #pragma once
 
-#include "constraints/contact/contact_rows.h"
+#include "constraints/contact/contact_effect.h"
 #include "constraints/contact/surface/edge_contact_pool.h"
-#include "engine/scene/builder.h"
 #include "isochor/effects/contact.h"
 
 namespace isochor {
@@ -12,15 +11,11 @@ class EdgeContact {
  public:
   // Of the surfaces of a surface contact whose layer is given. Adds nothing where no edge bulges. Fails where
   // edges are past each other at the start and that is not to be resolved.
-  static Result<EdgeContact> build(Builder& builder, const SurfaceContactDef& def, const Skin& skin,
-                                   const ContactLayer& layer);
+  static Result<EdgeContact> build(Builder& builder, const SurfaceContactDef& def,
+                                   const ContactSurface& surface, const ContactLayer& layer);
 
-  struct Totals {
-    Vec3 force{};                                          // on the first side [N]
-    double normal = 0, tangential = 0;                     // sums of magnitudes [N]
-    double gap = std::numeric_limits<double>::infinity();  // smallest [m]
-  };
-  Totals totals(const GaugeContext& context) const;
+  // Of the first side; no area, pressure or depth.
+  ContactTotals totals(const GaugeContext& context) const;
 
  private:
   std::shared_ptr<const ContactRows> rows_;  // null: there are no edges

@@ -4,7 +4,6 @@
 #include <map>
 #include <set>
 
-#include "constraints/contact/contact_rows.h"
 #include "constraints/contact/surface/edge_contact.h"
 #include "constraints/contact/surface/surface_contact_pool.h"
 #include "constraints/stencil/embedding.h"
@@ -28,9 +27,9 @@ constexpr DefaultLayer kBetweenBodies{0.001, 4}, kWithinBody{0.02, std::numeric_
 class SurfaceContactInstance final : public EffectInstance {
  public:
   SurfaceContactInstance(std::shared_ptr<const ContactRows> rows, Index row_pool,
-                         std::shared_ptr<const Skin> skin, EdgeContact edges)
-      : rows_(std::move(rows)), row_pool_(row_pool), skin_(std::move(skin)), edges_(std::move(edges)) {
-    for (const SkinPoint& p : skin_->points()) {
+                         std::shared_ptr<const ContactSurface> surface, EdgeContact edges)
+      : rows_(std::move(rows)), row_pool_(row_pool), surface_(std::move(surface)), edges_(std::move(edges)) {
+    for (const SurfacePoint& p : surface_->points()) {
       for (std::size_t k = 0; k < p.nodes; ++k) {
         auto& area = area_[{p.node[k], p.sheet}];
         area[0] += p.weight[k] * p.area;
@@ -43,56 +42,42 @@ class SurfaceContactInstance final : public EffectInstance {
     const auto& pool = pool_of(c);
     const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
     const auto memory = memory_of(c, pool);
-    const auto& points = pool.setup().skin->points();
-    Vec3 force{};
-    double normal = 0, tangential = 0, area = 0, gap = std::numeric_limits<double>::infinity();
-    double depth = 0;
+    const auto& points = pool.setup().surface->points();
+    const bool between = !pool.setup().surface->single();  // within a body forces cancel
+    ContactTotals sum;
     for (Index s = 0; s < pool.stencils(); ++s) {
-      if (!pool.close(s)) continue;
+      if (!pool.meets(s)) continue;
       const PatchPoint near = pool.nearest(s, c.state.x);
       if (!std::isfinite(near.distance)) continue;
-      gap = std::min(gap, near.distance - pool.setup().offset);
+      sum.gap = std::min(sum.gap, near.distance - pool.setup().offset);
       const double l = -lambda[at(s)];
       if (!(l > 0)) continue;
       const Vec3 pull = pool.kept_pull(s, memory, c.state.x);
       const double sign = points[at(s)].side == 0 ? 1 : -1;
-      if (!pool.setup().skin->single()) force += sign * (l * near.normal - pull);
-      normal += l;
-      depth = std::max(depth, rows_->depth(s, -l) / skin_->size());
-      tangential += std::sqrt(dot(pull, pull));
-      area += 0.5 * rows_->area[at(s)];
+      if (between) sum.force += sign * (l * near.normal - pull);
+      sum.normal += l;
+      sum.depth = std::max(sum.depth, rows_->depth(s, -l) / surface_->size());
+      sum.tangential += std::sqrt(dot(pull, pull));
+      sum.area += 0.5 * rows_->area[at(s)];
     }
-    const EdgeContact::Totals edges = edges_.totals(c);
-    if (!pool.setup().skin->single()) force += edges.force;
-    normal += edges.normal;
-    tangential += edges.tangential;
-    gap = std::min(gap, edges.gap);
+    const ContactTotals edges = edges_.totals(c);
+    if (between) sum.force += edges.force;
+    sum.normal += edges.normal;
+    sum.tangential += edges.tangential;
+    sum.gap = std::min(sum.gap, edges.gap);
     SurfaceForces at_nodes;
     surface_forces(c, at_nodes);
-    double pressure = 0;
     for (std::size_t i = 0; i < at_nodes.area.size(); ++i) {
-      if (at_nodes.area[i] > 0) pressure = std::max(pressure, at_nodes.normal[i] / at_nodes.area[i]);
+      if (at_nodes.area[i] > 0) sum.pressure = std::max(sum.pressure, at_nodes.normal[i] / at_nodes.area[i]);
     }
-    const std::string name(rows_->name());
-    const auto put = [&](const char* quantity, const char* unit, double value) {
-      out.push_back({name, "contact", quantity, unit, value});
-    };
-    put("force_x", "N", force.x);
-    put("force_y", "N", force.y);
-    put("force_z", "N", force.z);
-    put("normal_force", "N", normal);
-    put("friction_force", "N", tangential);
-    put("contact_area", "m2", area);
-    put("largest_pressure", "Pa", pressure);
-    put("smallest_gap", "m", gap);
-    put("depth_over_face", "", depth);
+    add_gauges(rows_->name(), sum, out);
   }
 
   bool surface_forces(const GaugeContext& c, SurfaceForces& f) const override {
     const auto& pool = pool_of(c);
     const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
     const auto memory = memory_of(c, pool);
-    const auto& points = pool.setup().skin->points();
+    const auto& points = pool.setup().surface->points();
     const std::size_t count = c.state.x.size();
     f.normal.assign(count, 0);
     f.tangential.assign(count, Vec3{});
@@ -106,7 +91,7 @@ class SurfaceContactInstance final : public EffectInstance {
       all_size[at(place.first)] += area[1];
     }
     for (Index s = 0; s < pool.stencils(); ++s) {
-      if (!pool.close(s)) continue;
+      if (!pool.meets(s)) continue;
       const PatchPoint near = pool.nearest(s, c.state.x);
       if (!std::isfinite(near.distance)) continue;
       // Of the sheets that something is close to.
@@ -149,7 +134,7 @@ class SurfaceContactInstance final : public EffectInstance {
 
   std::shared_ptr<const ContactRows> rows_;
   Index row_pool_;
-  std::shared_ptr<const Skin> skin_;
+  std::shared_ptr<const ContactSurface> surface_;
   EdgeContact edges_;
   std::map<std::pair<Index, Index>, std::array<double, 2>>
       area_;  // by node and sheet at rest: the sum of shares, and that of their sizes [m^2]
@@ -162,26 +147,18 @@ class SurfaceContactEffect final : public EffectSource {
   void describe(Fingerprint& f) const override { f.add(def_); }
 
   Result<void> check() const override {
-    for (const auto& [key, value, unit] : {std::tuple{"thickness", def_.thickness, " m"},
-                                           {"friction", def_.friction, ""},
-                                           {"static_friction", def_.static_friction, ""},
-                                           {"stick_stiffness", def_.stick_stiffness, " Pa/m"}}) {
-      if (value >= 0 && std::isfinite(value)) continue;
-      return Error{who() + key + " = " + number(value) + unit + "; it must be zero or positive"};
-    }
-    if (def_.static_friction > 0 && def_.static_friction < def_.friction) {
-      return Error{who() + "static_friction = " + number(def_.static_friction) + " with friction = " +
-                   number(def_.friction) + "; it must not be the smaller one, or 0 for the same"};
-    }
+    const std::array<ContactNumber, 4> numbers{{{"thickness", def_.thickness, "m"},
+                                                {"friction", def_.friction, ""},
+                                                {"static_friction", def_.static_friction, ""},
+                                                {"stick_stiffness", def_.stick_stiffness, "Pa/m"}}};
+    if (auto r = check_numbers(who(), numbers); !r) return r;
+    if (auto r = check_static_friction(who(), def_.friction, def_.static_friction); !r) return r;
     if (def_.compliance && !(*def_.compliance > 0 && std::isfinite(*def_.compliance))) {
       return Error{who() + "compliance = " + number(*def_.compliance) +
                    " m/Pa; it must be positive, or left out for a layer that is thin against the faces: "
                    "between two faceted surfaces a hard contact has no unique pressure"};
     }
-    if (!(def_.resolve_time > 0)) {
-      return Error{who() + "resolve_time = " + number(def_.resolve_time) + " s; it must be positive"};
-    }
-    return {};
+    return check_resolve_time(who(), def_.resolve_time);
   }
 
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
@@ -189,50 +166,37 @@ class SurfaceContactEffect final : public EffectSource {
     auto sides = both_sides(builder, called);
     if (!sides) return Error{sides.error()};
     auto setup = std::make_shared<SurfaceContactPool::Setup>();
-    setup->name = def_.name;
-    setup->skin = std::make_shared<Skin>(sides.value(), builder.rest());
-    setup->offset = def_.thickness;
-    setup->friction = {def_.friction, def_.static_friction};
-    setup->coupled = def_.coupling == FrictionCoupling::coupled;
-    setup->open = builder.length();
-    const std::array<double, 2> mu{stiffest(builder.body(def_.body)),
-                                   stiffest(builder.body(def_.against.value_or(def_.body)))};
-    const double softer = std::min(mu[0], mu[1]);
-    auto rows = std::make_shared<ContactRows>(def_.name, def_.resolve_time);
-    const DefaultLayer standard = setup->skin->single() ? kWithinBody : kBetweenBodies;
-    const double layer = def_.compliance.value_or(standard.thickness * setup->skin->size() / softer);
-    const double knee = def_.compliance ? std::numeric_limits<double>::infinity() : standard.knee * softer;
-    for (const SkinPoint& p : setup->skin->points()) {
-      // Both sides carry half of the pressure.
-      rows->add(softer, p.area, builder.length(), 2 * layer);
-      if (std::isfinite(knee)) rows->knee.push_back(0.5 * p.area * knee);
-      setup->stick.push_back(def_.stick_stiffness > 0 ? 0.5 * def_.stick_stiffness * p.area
-                                                      : 50 * softer * p.area / setup->skin->size());
-    }
-    std::shared_ptr<const StencilPool> pool =
-        std::make_shared<SurfaceContactPool>(setup, std::vector<Index>(setup->skin->points().size(), -1));
-    const std::vector<double> nothing(static_cast<std::size_t>(pool->memory()), 0);
-    const FollowAnswer start = pool->followed({nothing, builder.rest(), builder.rest(), false, nullptr});
-    if (start.pool) pool = start.pool;
-    if (auto r = find_overlap(builder, static_cast<const SurfaceContactPool&>(*pool), *rows); !r)
-      return Error{r.error()};
-    rows->largest_overshoot = 0.25 * setup->skin->size();
+    setup->surface = std::make_shared<ContactSurface>(sides.value(), builder.rest());
+    const ContactSurface& surface = *setup->surface;
+    const ContactLayer layer = layer_of(builder, surface);
+    std::vector<double> area;
+    for (const SurfacePoint& p : surface.points()) area.push_back(p.area);
+    const auto rows = pair_rows(builder, def_, def_.name, layer, area, surface.size(), *setup);
+    const auto pool = first_pairs(builder, SurfaceContactPool(setup, std::vector<Index>(area.size(), -1)));
+    if (auto r = find_overlap(builder, *pool, *rows); !r) return Error{r.error()};
     rows->stencil_pool = builder.add_stencils(pool);
     const Index row_pool = builder.add_rows(rows);
-    auto edges = EdgeContact::build(builder, def_, *setup->skin, {layer, knee, softer});
+    auto edges = EdgeContact::build(builder, def_, surface, layer);
     if (!edges) return Error{edges.error()};
     return std::unique_ptr<EffectInstance>(
-        std::make_unique<SurfaceContactInstance>(rows, row_pool, setup->skin, std::move(edges).value()));
+        std::make_unique<SurfaceContactInstance>(rows, row_pool, setup->surface, std::move(edges).value()));
   }
 
  private:
   std::string who() const { return "surface contact \"" + def_.name + "\": "; }
 
+  ContactLayer layer_of(const Builder& builder, const ContactSurface& surface) const {
+    const double softer =
+        std::min(stiffest(builder.body(def_.body)), stiffest(builder.body(def_.against.value_or(def_.body))));
+    if (def_.compliance) return {*def_.compliance, std::numeric_limits<double>::infinity(), softer};
+    const DefaultLayer standard = surface.single() ? kWithinBody : kBetweenBodies;
+    return {standard.thickness * surface.size() / softer, standard.knee * softer, softer};
+  }
   static std::size_t nodes_of_faces(const Builder& builder, BodyId body) {
     return static_cast<std::size_t>(nodes_per_face(builder.body(body).mesh.cell_type));
   }
-  Result<std::array<SkinFaces, 2>> both_sides(const Builder& builder, const std::string& called) const {
-    std::array<SkinFaces, 2> sides;
+  Result<std::array<SurfaceFaces, 2>> both_sides(const Builder& builder, const std::string& called) const {
+    std::array<SurfaceFaces, 2> sides;
     auto first = outward_faces(builder, def_.body, def_.surfaces, called);
     if (!first) return Error{first.error()};
     sides[0] = {std::move(first).value(), nodes_of_faces(builder, def_.body)};
@@ -256,38 +220,20 @@ class SurfaceContactEffect final : public EffectSource {
   }
 
   Result<void> find_overlap(const Builder& builder, const SurfaceContactPool& pool, ContactRows& rows) const {
-    Index worst = -1, inside = 0;
-    double deepest = -1e-9 * builder.length();
-    std::vector<double> overlap(rows.area.size(), 0.0), allowed = overlap;
-    // In the groove between two flanks of one body facets are a little below each other.
-    const double groove = pool.setup().skin->single() ? 0.02 * pool.setup().skin->size() : 0;
-    bool grooved = false;
+    const ContactSurface& surface = *pool.setup().surface;
+    std::vector<double> gap(rows.area.size(), pool.setup().open);
     for (Index s = 0; s < pool.stencils(); ++s) {
-      if (!pool.close(s)) continue;
-      const double gap = pool.nearest(s, builder.rest()).distance - def_.thickness;
-      if (!std::isfinite(gap)) continue;
-      if (gap < 0 && gap >= -groove) {
-        allowed[at(s)] = gap;
-        grooved = true;
-        continue;
-      }
-      overlap[at(s)] = std::min(gap, 0.0);
-      if (gap < -1e-9 * builder.length()) ++inside;
-      if (gap >= deepest) continue;
-      deepest = gap;
-      worst = s;
+      if (pool.meets(s)) gap[at(s)] = pool.nearest(s, builder.rest()).distance - def_.thickness;
     }
-    if (grooved) rows.allowed = std::move(allowed);
-    if (worst < 0) return {};
-    if (def_.initial_overlap == InitialOverlap::resolve) {
-      rows.overlap = std::move(overlap);
-      return {};
-    }
-    const SkinPoint& point = pool.setup().skin->points()[at(worst)];
+    // In the groove between two flanks of one body facets are a little below each other.
+    const Overlap found =
+        take_overlap(gap, surface.single() ? 0.02 * surface.size() : 0, builder.length(), rows);
+    if (found.worst < 0 || def_.initial_overlap == InitialOverlap::resolve) return {};
+    const SurfacePoint& point = surface.points()[at(found.worst)];
     const BodyData& body = builder.body(point.side == 1 ? *def_.against : def_.body);
-    return Error{who() + std::to_string(inside) +
+    return Error{who() + std::to_string(found.count) +
                  " points of the surfaces are closer than they may be at the start, the deepest by " +
-                 number(-deepest) + " m at node " + std::to_string(point.node[0] - body.first_node) +
+                 number(-found.deepest) + " m at node " + std::to_string(point.node[0] - body.first_node) +
                  " of body \"" + body.name +
                  "\"; move one of the two, or set initial_overlap to resolve to have them pushed apart"};
   }

@@ -1,81 +1,89 @@
 // Stencils of points on moving surfaces against the triangles that are close to them.
 #pragma once
 
-#include "constraints/contact/friction/friction_spring.h"
-#include "constraints/contact/surface/skin.h"
-#include "engine/system/pool.h"
+#include "constraints/contact/friction/frictional_pool.h"
+#include "constraints/contact/surface/contact_surface.h"
+#include "constraints/contact/surface/pairing.h"
 
 namespace isochor {
 
-// One stencil a point of the skin and one function, its signed distance to a patch of the other surface less
-// an offset [m]; its multiplier is minus the normal force. The nodes are those of the point, then those of
-// the patch: a triangle and its neighbors across edges, among which the nearest place is found at every
-// evaluation. Points that nothing is close to have no nodes, and a gap that is never closed. Friction as in
-// ContactPool, the pull of the last step turning with the triangle of the point, whose corners are nodes of
-// the stencil as well where friction is coupled.
-class SurfaceContactPool final : public StencilPool {
+// A point of the surface against a patch of the other one; the gap is its signed distance less an offset. The
+// nodes are those of the point, then those of the patch: a triangle and its neighbors across edges, among
+// which the nearest place is found at every evaluation. Points that nothing is close to have no nodes, and a
+// gap that is never closed. What friction keeps turns with the triangle of the point, whose corners are nodes
+// of the stencil as well where friction is coupled.
+class SurfaceContactPool final : public FrictionalPool<SurfaceContactPool> {
  public:
-  // What pools that replace each other share.
-  struct Setup {
-    std::string name;
-    std::shared_ptr<const Skin> skin;
-    double offset = 0;  // [m]
-    FrictionLaw friction;
-    std::vector<double> stick;  // by point: stiffness of friction that sticks [N/m]
-    double open = 1;            // gap of points that nothing is close to [m]
-    bool coupled = false;
+  struct Setup : PairSetup {
+    std::shared_ptr<const ContactSurface> surface;
   };
   // `center`: by point the triangle its patch is around, or -1.
   SurfaceContactPool(std::shared_ptr<const Setup> setup, std::vector<Index> center);
 
-  std::string_view name() const override { return setup_->name; }
-  bool has_energy() const override { return setup_->friction.any(); }
-  int functions() const override { return 1; }
-  void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
-
-  bool has_lag() const override { return setup_->friction.any(); }
-  bool couples() const override { return setup_->coupled && has_lag(); }
-  // surface_coupling.cpp
-  void lag_derivatives(const StencilRequest& request, const LagSlots& slots) const override;
-  // By point: one more than the center, then the pull in the axes of its triangle and what the law keeps.
-  int memory() const override { return memory_per_point() * stencils(); }
+  // By point: one more than the center, then what friction keeps.
   void accept(const StencilRequest& request, std::span<double> memory) const override;
   bool follows() const override { return true; }
   FollowAnswer followed(const FollowRequest& request) const override;
   Result<std::shared_ptr<const StencilPool>> restored(std::span<const double> memory) const override;
 
   const Setup& setup() const { return *setup_; }
-  bool close(Index s) const { return center_[at(s)] >= 0; }
+  bool meets(Index s) const { return center_[at(s)] >= 0; }
   // The nearest place and its distance, without the offset; of points that something is close to.
   PatchPoint nearest(Index s, std::span<const Vec3> x) const;
   // Share of node i of a stencil in the motion of the point relative to the patch.
   double share(Index s, std::size_t i, const PatchPoint& near) const;
   // The pull of friction that a step left, at positions x [N].
-  Vec3 kept_pull(Index s, std::span<const double> memory, std::span<const Vec3> x) const;
+  Vec3 kept_pull(Index s, std::span<const double> memory, std::span<const Vec3> x) const {
+    return pull_in_space(Frames{x, x}, s, memory);
+  }
 
  private:
-  struct Friction {
-    FrictionSpring spring;
-    double mu = 0;  // coefficient of this step
-    PatchPoint near;
-    Vec3 whole{};  // slip and stretch before they are projected on the tangent plane
+  friend class FrictionalPool<SurfaceContactPool>;
+  static constexpr std::size_t kMost = kFaceNodes + kPatchNodes + 3;  // nodes of a stencil
+  struct Frames {
+    std::span<const Vec3> now, lag;
   };
+  struct Gap {
+    double value = 0;
+    bool exists = false;
+    PatchPoint near;
+    std::array<double, kMost> weight{};
+    Vec3 slope(std::size_t i, double factor) const { return factor * weight[i] * near.normal; }
+  };
+  struct TouchAt : Touch<kMost> {
+    PatchPoint near;
+  };
+  class Rates;  // surface_touch.cpp
+
+  // What FrictionalPool asks.
+  static Frames frames(const StencilRequest& q) { return {q.x, q.lag.x.empty() ? q.x : q.lag.x}; }
+  double open() const { return setup_->open; }
+  double stick(Index s) const { return setup_->stick[at(s)]; }
+  Gap gap_at(const Frames& frames, Index s, Want want) const;
+  void add_curvature(const StencilRequest& request, const Frames& frames, const Gap& gap, Index s,
+                     Mat3* blocks) const;
+  TouchAt touch(const StencilRequest& request, const Frames& frames, Index s) const;
+  Vec3 to_space(const Frames& frames, Index s, const Vec3& own) const { return axes(s, frames.lag) * own; }
+  Vec3 to_own(const Frames& frames, Index s, const Vec3& v) const {
+    return transposed_times(axes(s, frames.now), v);
+  }
+  Rates rates(const StencilRequest& request, const Frames& frames, Index s, const TouchAt& touch) const;
+
   // Nodes of a stencil that its gap depends on; those behind them only turn the pull that is kept.
-  std::size_t gap_nodes(Index s) const { return setup_->skin->points()[at(s)].nodes + patch_[at(s)].nodes; }
-  Vec3 kept_pull_rate(Index s, std::span<const double> memory, std::span<const Vec3> x, Index node,
-                      const Vec3& rate) const;
-  double coefficient(Index s, std::span<const double> memory) const;
-  int memory_per_point() const { return setup_->friction.any() ? 4 + setup_->friction.memory() : 1; }
-  Friction friction(const StencilRequest& request, Index s) const;
+  std::size_t gap_nodes(Index s) const {
+    return setup_->surface->points()[at(s)].nodes + patch_[at(s)].nodes;
+  }
   Mat3 axes(Index s, std::span<const Vec3> x) const;
   // The nearest place of a patch around a triangle.
   PatchPoint seen_from(Index s, Index center, std::span<const Vec3> x) const;
   bool reaches_out(const PatchPoint& near, Index s, Index center, std::span<const Vec3> x) const;
-  double reach() const { return setup_->offset + 0.75 * setup_->skin->size(); }
+  double reach() const { return setup_->offset + 0.75 * setup_->surface->size(); }
 
   std::shared_ptr<const Setup> setup_;
   std::vector<Index> center_;
   std::vector<Patch> patch_;
 };
+
+extern template class FrictionalPool<SurfaceContactPool>;  // surface_touch.cpp
 
 }  // namespace isochor

@@ -1,4 +1,4 @@
-#include "constraints/contact/surface/skin_edges.h"
+#include "constraints/contact/surface/surface_edges.h"
 
 #include <cmath>
 
@@ -27,22 +27,22 @@ bool bulges(const Vec3& n, const Vec3& m, const Vec3& to_far) {
 
 }  // namespace
 
-SkinEdges::SkinEdges(const Skin& skin, std::span<const Vec3> rest)
-    : single_(skin.single()), size_(skin.size()) {
+SurfaceEdges::SurfaceEdges(const ContactSurface& surface, std::span<const Vec3> rest)
+    : single_(surface.single()), size_(surface.size()) {
   for (int side = 0; side < 2; ++side) {
     first_[static_cast<std::size_t>(side)] = count();
-    for (Index t = 0; t < skin.triangles(); ++t) {
-      if (skin.side(t) != side) continue;
-      const auto& c = skin.corners(t);
+    for (Index t = 0; t < surface.triangles(); ++t) {
+      if (surface.side(t) != side) continue;
+      const auto& c = surface.corners(t);
       for (std::size_t k = 0; k < 3; ++k) {
-        const Index other = skin.across(t, k);
-        if (other < t || skin.same_face(t, other)) continue;
+        const Index other = surface.across(t, k);
+        if (other < t || surface.same_face(t, other)) continue;
         const Index a = c[k], b = c[(k + 1) % 3];
         Index far = -1;
-        for (const Index n : skin.corners(other)) {
+        for (const Index n : surface.corners(other)) {
           if (n != a && n != b) far = n;
         }
-        const Vec3 n = area_vector(c, rest), m = area_vector(skin.corners(other), rest);
+        const Vec3 n = area_vector(c, rest), m = area_vector(surface.corners(other), rest);
         if (!bulges(n, m, rest[at(far)] - rest[at(a)])) continue;
         edge_.push_back({{a, b, c[(k + 2) % 3], far}, side, (norm(n) + norm(m)) / 3});
       }
@@ -59,7 +59,7 @@ SkinEdges::SkinEdges(const Skin& skin, std::span<const Vec3> rest)
   }
 }
 
-std::array<Index, kPairNodes> SkinEdges::nodes(Index edge, Index other) const {
+std::array<Index, kPairNodes> SurfaceEdges::nodes(Index edge, Index other) const {
   std::array<Index, kPairNodes> out{};
   std::copy_n(edge_[at(edge)].node.begin(), kEdgeNodes, out.begin());
   std::copy_n(edge_[at(other)].node.begin(), kEdgeNodes, out.begin() + kEdgeNodes);
@@ -76,27 +76,27 @@ std::array<Vec3, kPairNodes> places(const std::array<Index, kPairNodes>& nodes, 
 
 }  // namespace
 
-EdgeGap SkinEdges::gap(Index edge, Index other, std::span<const Vec3> x, double offset) const {
+EdgeGap SurfaceEdges::gap(Index edge, Index other, std::span<const Vec3> x, double offset) const {
   return edge_gap(places(nodes(edge, other), x), offset);
 }
 
-bool SkinEdges::share_nodes(Index edge, Index other) const {
+bool SurfaceEdges::share_nodes(Index edge, Index other) const {
   const auto &a = edge_[at(edge)].node, &b = edge_[at(other)].node;
   return std::any_of(a.begin(), a.end(),
                      [&](Index n) { return std::find(b.begin(), b.end(), n) != b.end(); });
 }
 
-bool SkinEdges::beside(Index edge, Index other) const {
+bool SurfaceEdges::beside(Index edge, Index other) const {
   const auto &a = edge_[at(edge)].node, &b = edge_[at(other)].node;
   return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
 }
 
-bool SkinEdges::familiar(Index edge, Index other, std::span<const Index> partner) const {
+bool SurfaceEdges::familiar(Index edge, Index other, std::span<const Index> partner) const {
   const Index own = partner[at(edge)], its = partner[at(other)];
   return (own >= 0 && beside(own, other)) || (its >= 0 && beside(its, edge));
 }
 
-Box SkinEdges::swept(Index edge, const Way& way) const {
+Box SurfaceEdges::swept(Index edge, const Way& way) const {
   const auto& n = edge_[at(edge)].node;
   Box box(way.x[at(n[0])]);
   box.add(way.x[at(n[1])]);
@@ -105,7 +105,7 @@ Box SkinEdges::swept(Index edge, const Way& way) const {
   return box;
 }
 
-SkinEdges::Finding SkinEdges::find(Index e, const Way& way, std::span<const Box> boxes) const {
+SurfaceEdges::Finding SurfaceEdges::find(Index e, const Way& way, std::span<const Box> boxes) const {
   const auto other = static_cast<std::size_t>(single_ ? 0 : 1 - edge_[at(e)].side);
   const Box around = swept(e, way).grown(way.reach);
   Finding found;
@@ -136,9 +136,9 @@ SkinEdges::Finding SkinEdges::find(Index e, const Way& way, std::span<const Box>
   return found;
 }
 
-void SkinEdges::search(std::span<const Vec3> from, std::span<const Vec3> x, double reach, double offset,
-                       std::span<const Index> partner, const Parallel* parallel,
-                       std::span<Finding> out) const {
+void SurfaceEdges::search(std::span<const Vec3> from, std::span<const Vec3> x, double reach, double offset,
+                          std::span<const Index> partner, const Parallel* parallel,
+                          std::span<Finding> out) const {
   const Way way{from, x, reach, offset, partner};
   std::array<std::vector<Box>, 2> boxes;
   for (std::size_t side = 0; side < 2; ++side)

@@ -10,7 +10,7 @@ namespace isochor {
 
 // A point of a surface: a corner, the middle of an edge or that of a triangle. On a sharp edge there is one
 // for each of the sheets that meet there.
-struct SkinPoint {
+struct SurfacePoint {
   std::array<Index, kFaceNodes> node{};
   std::array<double, kFaceNodes> weight{};
   std::size_t nodes = 0;
@@ -26,20 +26,20 @@ struct SkinPoint {
 };
 
 // Faces of 3, 4 or 6 nodes of the scene, counterclockwise from outside.
-struct SkinFaces {
+struct SurfaceFaces {
   std::vector<Index> faces;
   std::size_t per = 3;
 };
 
-class Skin {
+class ContactSurface {
  public:
   // Those of one side contact the other, those of a single one each other. Faces are searched as triangles:
   // those of six nodes as four, those of four as two.
-  Skin(const std::array<SkinFaces, 2>& sides, std::span<const Vec3> rest);
+  ContactSurface(const std::array<SurfaceFaces, 2>& sides, std::span<const Vec3> rest);
 
   Index triangles() const { return static_cast<Index>(corner_.size()); }
   bool single() const { return single_; }
-  const std::vector<SkinPoint>& points() const { return points_; }
+  const std::vector<SurfacePoint>& points() const { return points_; }
   // Triangles that a point belongs to.
   std::span<const Index> triangles_at(Index point) const { return at_point_[point]; }
   const std::array<Index, 3>& corners(Index triangle) const { return corner_[at(triangle)]; }
@@ -92,7 +92,7 @@ class Skin {
                std::span<const Box> boxes) const;
   void split_at_sharp_edges(std::span<const Vec3> rest);
   std::vector<Index> sheets() const;
-  bool touches(Index triangle, const SkinPoint& point) const;
+  bool touches(Index triangle, const SurfacePoint& point) const;
   bool neighbors(Index triangle, Index other) const;  // share a node, or are the same
 
   bool single_ = true;
@@ -101,7 +101,7 @@ class Skin {
   std::vector<bool> at_border_;  // by node: whether a smooth part of the surface ends there
   std::vector<Part> part_;
   std::vector<int> side_;
-  std::vector<SkinPoint> points_;
+  std::vector<SurfacePoint> points_;
   Lists at_point_;
   std::array<BoxTree, 2> tree_;
   std::array<Index, 2> first_{};  // triangle of a side

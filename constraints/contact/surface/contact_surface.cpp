@@ -1,4 +1,4 @@
-#include "constraints/contact/surface/skin.h"
+#include "constraints/contact/surface/contact_surface.h"
 
 #include <cmath>
 #include <limits>
@@ -30,7 +30,7 @@ bool face_each_other(const Vec3& n, const Vec3& m) {
 
 }  // namespace
 
-void Skin::add_face(std::span<const Index> face, int side) {
+void ContactSurface::add_face(std::span<const Index> face, int side) {
   constexpr std::array<std::array<std::uint8_t, 3>, 4> six{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
   const auto add = [&](const std::array<std::uint8_t, 3>& local) {
     Part part;
@@ -54,7 +54,7 @@ void Skin::add_face(std::span<const Index> face, int side) {
   }
 }
 
-Skin::Skin(const std::array<SkinFaces, 2>& sides, std::span<const Vec3> rest)
+ContactSurface::ContactSurface(const std::array<SurfaceFaces, 2>& sides, std::span<const Vec3> rest)
     : single_(sides[1].faces.empty()) {
   double edges = 0;
   for (std::size_t side = 0; side < 2; ++side) {
@@ -85,7 +85,7 @@ Skin::Skin(const std::array<SkinFaces, 2>& sides, std::span<const Vec3> rest)
 }
 
 // Surfaces go on smoothly up to a fold of 60 degrees.
-void Skin::split_at_sharp_edges(std::span<const Vec3> rest) {
+void ContactSurface::split_at_sharp_edges(std::span<const Vec3> rest) {
   constexpr double least_cosine = 0.5;
   side_across_.assign(corner_.size(), {-1, -1, -1});
   for (std::size_t t = 0; t < corner_.size(); ++t) {
@@ -110,7 +110,7 @@ void Skin::split_at_sharp_edges(std::span<const Vec3> rest) {
 }
 
 // Numbers of the parts that sharp edges leave, by triangle.
-std::vector<Index> Skin::sheets() const {
+std::vector<Index> ContactSurface::sheets() const {
   std::vector<Index> sheet(corner_.size(), -1), waiting;
   Index count = 0;
   for (Index t = 0; t < triangles(); ++t) {
@@ -133,7 +133,7 @@ std::vector<Index> Skin::sheets() const {
 
 // The Newton-Cotes rule of degree three, all of whose weights are positive: corners, middles of edges, the
 // middle of the triangle. Neighbors share its points, so they sample corners and edges of a surface.
-void Skin::add_points(std::span<const Vec3> rest) {
+void ContactSurface::add_points(std::span<const Vec3> rest) {
   constexpr double at_corner = 1.0 / 20, at_edge = 2.0 / 15, at_middle = 9.0 / 20;
   const std::vector<Index> sheet = sheets();
   // A point is the same for faces that give it the same nodes with the same weights.
@@ -154,7 +154,7 @@ void Skin::add_points(std::span<const Vec3> rest) {
       if (std::abs(shape.N[k]) > 1e-9) shares.emplace_back(part.face[k], shape.N[k]);
     }
     std::sort(shares.begin(), shares.end());
-    SkinPoint point;
+    SurfacePoint point;
     std::array<Share, kFaceNodes> name{};
     for (const auto& [node, weight] : shares) {
       name[point.nodes] = {node, std::lround(1e6 * weight)};
@@ -185,7 +185,7 @@ void Skin::add_points(std::span<const Vec3> rest) {
   for (const auto& list : around) at_point_.push(list);
 }
 
-bool Skin::touches(Index triangle, const SkinPoint& point) const {
+bool ContactSurface::touches(Index triangle, const SurfacePoint& point) const {
   const Part& part = part_[at(triangle)];
   for (std::size_t c = 0; c < part.nodes; ++c) {
     for (std::size_t k = 0; k < point.nodes; ++k) {
@@ -195,19 +195,19 @@ bool Skin::touches(Index triangle, const SkinPoint& point) const {
   return false;
 }
 
-bool Skin::neighbors(Index t, Index other) const {
+bool ContactSurface::neighbors(Index t, Index other) const {
   const auto &a = corner_[at(t)], &b = corner_[at(other)];
   return std::any_of(a.begin(), a.end(),
                      [&](Index n) { return std::find(b.begin(), b.end(), n) != b.end(); });
 }
 
-bool Skin::facing(Index s, Index triangle, std::span<const Vec3> x) const {
+bool ContactSurface::facing(Index s, Index triangle, std::span<const Vec3> x) const {
   Vec3 own{};
   for (const Index t : at_point_[s]) own += area_vector(corner_[at(t)], x);
   return face_each_other(area_vector(corner_[at(triangle)], x), own);
 }
 
-Skin::Around Skin::around(Index triangle, Index point) const {
+ContactSurface::Around ContactSurface::around(Index triangle, Index point) const {
   Around out;
   out.patch.margin = kLeave * size_;
   const Part& middle = part_[at(triangle)];
@@ -237,7 +237,7 @@ Skin::Around Skin::around(Index triangle, Index point) const {
   return out;
 }
 
-bool Skin::in_patch(Index center, Index triangle, Index point) const {
+bool ContactSurface::in_patch(Index center, Index triangle, Index point) const {
   if (center == triangle) return true;
   if (center < 0) return false;
   const auto& smooth = across_[at(center)];
@@ -249,9 +249,9 @@ bool Skin::in_patch(Index center, Index triangle, Index point) const {
          !touches(triangle, points_[at(point)]);
 }
 
-Skin::Finding Skin::find(Index s, std::span<const Vec3> from, std::span<const Vec3> x, double reach,
-                         Index center, std::span<const Box> boxes) const {
-  const SkinPoint& point = points_[at(s)];
+ContactSurface::Finding ContactSurface::find(Index s, std::span<const Vec3> from, std::span<const Vec3> x,
+                                             double reach, Index center, std::span<const Box> boxes) const {
+  const SurfacePoint& point = points_[at(s)];
   const auto other = static_cast<std::size_t>(single_ ? 0 : 1 - point.side);
   const Vec3 p0 = point.position(from), p1 = point.position(x);
   Box way(p0);
@@ -336,8 +336,9 @@ Skin::Finding Skin::find(Index s, std::span<const Vec3> from, std::span<const Ve
   return found;
 }
 
-void Skin::search(std::span<const Vec3> from, std::span<const Vec3> x, double reach,
-                  std::span<const Index> center, const Parallel* parallel, std::span<Finding> out) const {
+void ContactSurface::search(std::span<const Vec3> from, std::span<const Vec3> x, double reach,
+                            std::span<const Index> center, const Parallel* parallel,
+                            std::span<Finding> out) const {
   std::array<std::vector<Box>, 2> boxes;
   for (std::size_t side = 0; side < 2; ++side) {
     boxes[side] = tree_[side].fitted([&](Index i) {

@@ -1,27 +1,27 @@
-// Edges of a skin that bulge outward, which may meet each other between the points of the skin, and the
+// Edges of a surface that bulge outward, which may meet each other between the points of the surface, and the
 // search for those that do.
 #pragma once
 
+#include "constraints/contact/surface/contact_surface.h"
 #include "constraints/contact/surface/edge_distance.h"
-#include "constraints/contact/surface/skin.h"
 
 namespace isochor {
 
-struct SkinEdge {
+struct SurfaceEdge {
   std::array<Index, kEdgeNodes> node{};  // ends, then the far corners of its triangles, as in EdgeGap
   int side = 0;
   double area = 0;  // a third of its triangles at rest [m^2]
 };
 
-class SkinEdges {
+class SurfaceEdges {
  public:
   // Edges between two faces whose normals are 20 degrees apart at rest, or more. Flatter ones sink in by 4
   // percent of their length at most before a point of one of the two meets the other side.
-  SkinEdges(const Skin& skin, std::span<const Vec3> rest);
+  SurfaceEdges(const ContactSurface& surface, std::span<const Vec3> rest);
 
   Index count() const { return static_cast<Index>(edge_.size()); }
-  const SkinEdge& operator[](Index e) const { return edge_[at(e)]; }
-  double size() const { return size_; }  // as of the skin [m]
+  const SurfaceEdge& operator[](Index e) const { return edge_[at(e)]; }
+  double size() const { return size_; }  // as of the surface [m]
 
   // The nodes of a pair, the first edge first.
   std::array<Index, kPairNodes> nodes(Index edge, Index other) const;
@@ -53,7 +53,7 @@ class SkinEdges {
 
   bool single_ = true;
   double size_ = 0;
-  std::vector<SkinEdge> edge_;  // side by side
+  std::vector<SurfaceEdge> edge_;  // side by side
   std::array<Index, 2> first_{};
   std::array<BoxTree, 2> tree_;
 };
