@@ -221,6 +221,7 @@ class Builder {
   Result<SystemParts> finish(bool needs_anchors);
   std::vector<std::string>& warnings() { return warnings_; }
   std::vector<BodyData>& bodies() { return bodies_; }
+  const std::vector<BodyData>& bodies() const { return bodies_; }
 
  private:
   Result<void> add_regions(const BodyDef& def, BodyData& body) const;

@@ -10,7 +10,10 @@ struct State {
   std::vector<Vec3> x;         // positions [m]
   std::vector<Vec3> v;         // velocities [m/s]
   std::vector<double> lambda;  // multipliers of compliant rows, energy per unit of the row
-  std::vector<double> extra;   // what schemes and effects keep between steps
+  std::vector<double> extra;   // what effects and schemes keep between steps (step/state_layout.h)
+  // Internal minus load forces at the last step's end [N]: what supports take up. They follow from the rest
+  // and the increment that led here, so the hash leaves them out.
+  std::vector<Vec3> reactions;
 
   std::uint64_t hash() const {
     Hash h;

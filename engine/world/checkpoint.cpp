@@ -8,6 +8,7 @@
 #include "engine/base/bytes.h"
 #include "engine/base/fingerprint.h"
 #include "engine/base/text.h"
+#include "engine/step/time_scheme.h"
 #include "engine/world/world_impl.h"
 
 namespace isochor {
@@ -39,13 +40,14 @@ struct Content {
 Moment moment_of(const State& s) {
   return {s.t, s.x, s.v, s.lambda, s.extra};
 }
-State state_of(Moment&& m) {
+State state_of(Moment&& m, const std::vector<Vec3>& reactions) {
   State s;
   s.t = m.t;
   s.x = std::move(m.x);
   s.v = std::move(m.v);
   s.lambda = std::move(m.lambda);
   s.extra = std::move(m.extra);
+  s.reactions = reactions;
   return s;
 }
 
@@ -169,40 +171,13 @@ const std::vector<ScenePart>& World::Impl::scene_parts() {
   return described;
 }
 
-// The stencils that a saved state has, put in place of the present ones.
-Result<void> World::Impl::restore_stencils(std::span<const double> memory) {
-  if (!system->has_followers()) return {};
-  const auto present = system->parts().stencil_pools;
-  auto pools = present;
-  bool changed = false;
-  for (std::size_t p = 0; p < pools.size(); ++p) {
-    if (!pools[p]->follows()) continue;
-    const auto kept = memory.subspan(at(system->first_stencil_memory(static_cast<Index>(p))),
-                                     static_cast<std::size_t>(pools[p]->memory()));
-    // Zeros: no step has been accepted, and the stencils are those that the scene began with.
-    if (std::all_of(kept.begin(), kept.end(), [](double v) { return v == 0; })) {
-      pools[p] = first_stencils[p];
-    } else {
-      auto restored = pools[p]->restored(kept);
-      if (!restored) return damaged(restored.error());
-      pools[p] = std::move(restored).value();
-    }
-    changed = true;
-  }
-  if (!changed) return {};
-  auto replaced = replace_stencils(std::move(pools));
-  if (replaced) return {};
-  // The world is as it was.
-  (void)replace_stencils(present);
-  return Error{"load: " + replaced.error()};
-}
-
 std::vector<std::byte> World::save() const {
   Impl& w = *impl_;
   if (!w.compile()) return {};
-  Content content{w.scene_parts(), moment_of(w.state), {}, w.reactions, {}};
-  if (w.settled) content.settled.push_back(moment_of(*w.settled));
-  w.save_amounts(content.amounts);
+  Content content{w.scene_parts(), moment_of(w.state), {}, w.state.reactions, {}};
+  const std::optional<State>& settled = w.controller->settled();
+  if (settled) content.settled.push_back(moment_of(*settled));
+  w.amounts.save(content.amounts);
   ByteWriter out;
   out.put(Header{});
   out.put(content);
@@ -219,7 +194,7 @@ Result<void> World::Impl::check_moment(const M& m) const {
     return damaged("it holds numbers that are not finite");
   // Beyond this, searches for what is close have no numbers left to count their boxes with.
   constexpr double farthest = 1e12;
-  const double limit = farthest * std::max(system->length(), 1e-300);
+  const double limit = farthest * std::max(system().length(), 1e-300);
   for (std::size_t i = 0; i < m.x.size(); ++i) {
     if (std::max({std::abs(m.x[i].x), std::abs(m.x[i].y), std::abs(m.x[i].z)}) <= limit) continue;
     return damaged("node " + std::to_string(i) + " is more than " + number(limit) + " m away");
@@ -237,21 +212,22 @@ Result<void> World::load(std::span<const std::byte> bytes) {
     return Error{"load: the state was saved from another scene: of this world differ " + what +
                  "; load it into a world built the same way"};
   }
-  if (c.reactions.size() != w.reactions.size() || c.settled.size() > 1)
+  if (c.reactions.size() != w.state.reactions.size() || c.settled.size() > 1)
     return damaged("its sizes do not fit this scene");
   if (!finite(c.reactions) || !finite(c.amounts)) return damaged("it holds numbers that are not finite");
   if (auto r = w.check_moment(c.now); !r) return r;
   if (!c.settled.empty()) {
     if (auto r = w.check_moment(c.settled.front()); !r) return r;
   }
-  if (!w.amounts_fit(c.amounts)) return damaged("its amounts are none of these effects");
-  if (auto r = w.restore_stencils(std::span<const double>(c.now.extra).first(at(w.system->memory()))); !r)
-    return r;
-  w.load_amounts(c.amounts);
-  w.state = state_of(std::move(c.now));
-  w.settled.reset();
-  if (!c.settled.empty()) w.settled = state_of(std::move(c.settled.front()));
-  w.reactions.swap(c.reactions);
+  if (!w.amounts.fit(c.amounts)) return damaged("its amounts are none of these effects");
+  const auto stencils = w.controller->stepper().surroundings().restore(
+      std::span<const double>(c.now.extra).first(w.layout.pools));
+  if (!stencils) return damaged(stencils.error());
+  w.amounts.load(c.amounts);
+  w.state = state_of(std::move(c.now), c.reactions);
+  std::optional<State>& settled = w.controller->settled();
+  settled.reset();
+  if (!c.settled.empty()) settled = state_of(std::move(c.settled.front()), c.reactions);
   return {};
 }
 

@@ -7,8 +7,7 @@
 #include <map>
 
 #include "engine/base/text.h"
-#include "engine/scene/builder.h"
-#include "engine/solve/newton/newton.h"
+#include "engine/step/step_report.h"
 #include "engine/step/time_scheme.h"
 #include "engine/world/recovery.h"
 #include "engine/world/world_impl.h"
@@ -62,10 +61,7 @@ Result<World> World::create(WorldOptions options, std::uint64_t abi) {
         "world: the linear solver asked for is not part of this build; `isochor version` lists those that "
         "are"};
   }
-  auto impl = std::make_unique<Impl>();
-  impl->options = std::move(options);
-  impl->parallel = std::make_unique<TbbParallel>(impl->options.threads);
-  return World(std::move(impl));
+  return World(std::make_unique<Impl>(std::move(options)));
 }
 
 Result<BodyId> World::add_body(BodyDef body) {
@@ -87,6 +83,7 @@ Result<EffectId> World::add(EffectPtr effect) {
 
 Result<void> World::Impl::compile() {
   if (compiled()) return {};
+  if (controller) return Error{"world: memory ran out when stencils were replaced; make the world anew"};
   if (!compile_error.empty()) return Error{compile_error};
   const auto result = compile_once();
   for (const std::string& warning : builder.warnings()) {
@@ -115,21 +112,21 @@ Result<void> World::Impl::compile_once() {
   held_by = builder.held_directions(sources.size());
   auto parts = builder.finish(!options.scheme->has_inertia());
   if (!parts) return Error{parts.error()};
-  if (auto r = make_method(std::move(parts).value()); !r) return r;
+  if (auto r = methods.choose(std::move(parts).value()); !r) return r;
   tell_idle_rows();
-  allocate();
+  begin_state();
   return {};
 }
 
 // Rows that supports leave nothing to do, by the effect that they are of.
 void World::Impl::tell_idle_rows() {
   std::map<std::string, std::pair<Index, Index>> of_pool;  // idle rows, all rows
-  const auto& pools = system->parts().row_pools;
+  const auto& pools = system().parts().row_pools;
   for (Index p = 0; p < static_cast<Index>(pools.size()); ++p) {
     const RowPool& pool = *pools[at(p)];
     if (pool.law != RowLaw::compliant) continue;
-    const auto first = system->first_row(p);
-    const auto idle = std::count_if(system->idle_rows().begin(), system->idle_rows().end(),
+    const auto first = system().first_row(p);
+    const auto idle = std::count_if(system().idle_rows().begin(), system().idle_rows().end(),
                                     [&](Index r) { return r >= first && r < first + pool.rows(); });
     auto& [count, all] = of_pool[std::string(pool.name())];
     count += static_cast<Index>(idle);
@@ -145,40 +142,11 @@ void World::Impl::tell_idle_rows() {
   }
 }
 
-void World::Impl::allocate() {
-  const std::size_t n = at(system->nodes());
-  const auto& parts = system->parts();
-  state.x = parts.rest;
-  state.v.assign(n, Vec3{});
-  state.lambda.assign(at(system->rows()), 0.0);
-  x_trial.resize(n);
-  predicted.resize(n);
-  force.resize(n);
-  weight.assign(n, 0);
-  lambda_trial.resize(at(system->rows()));
-  target.resize(at(system->rows()));
-  prescribed.resize(at(system->prescribed_rows()));
-  position.resize(system->free_bases().size());
-  reactions.assign(n, Vec3{});
-  admission.emplace(builder.bodies(), parts);
-  momentum.resize(n);
-  if (system->has_bounds() || system->has_barrier())
-    for (auto& values : row_values) values.resize(at(system->rows()));
-  // Last increment's length and suggestion for the next, then velocities before it.
-  const std::size_t control = controls_error() ? 2 + 3 * n : 0;
-  state.extra.assign(at(system->memory()) + options.scheme->memory(n) + control, 0.0);
-  if (controls_error()) state_before = state;
-  if (options.scheme->has_inertia()) ahead = state;
-  memory_before.resize(at(system->memory()));
-  if (system->has_followers()) first_stencils = parts.stencil_pools;
-  for (Index p = 0; p < static_cast<Index>(parts.row_pools.size()); ++p) {
-    const RowPool& pool = *parts.row_pools[at(p)];
-    if (pool.memory() == 0) continue;
-    pool.start(
-        std::span(state.extra).subspan(at(system->first_memory(p)), static_cast<std::size_t>(pool.memory())));
-  }
-  // Gravity acts on the mass that inertia has: with a lumped mass, free fall stays rigid. Statics has no
-  // inertia and takes the consistent distribution, which is more accurate for Tet10.
+// Gravity acts on the mass that inertia has: with a lumped mass, free fall stays rigid. Statics has no
+// inertia and takes the consistent distribution, which is more accurate for Tet10.
+std::vector<double> World::Impl::gravity_mass() const {
+  const SystemParts& parts = system().parts();
+  std::vector<double> weight(parts.rest.size(), 0);
   const bool lumped = options.scheme->has_inertia() && !options.consistent_mass;
   // Points without a body have lumped mass always.
   if (options.scheme->has_inertia()) weight = parts.mass;
@@ -189,127 +157,32 @@ void World::Impl::allocate() {
       add_nodal_volume(*body.reference, parts.rest, body.global_cells, region.cells, region.density, weight);
     }
   }
-  if (std::any_of(parts.row_pools.begin(), parts.row_pools.end(),
-                  [](const auto& p) { return p->looks_back() && p->rows() > 0; })) {
-    no_past.assign(options.scheme->memory(n), 0);
-    row_work.resize(2 * at(system->rows()));
-  }
-  evaluate_data(0);
+  return weight;
 }
 
-void World::Impl::evaluate_data(double t) {
-  const SystemParts& parts = system->parts();
-  const Vec3 g = evaluate(options.gravity_curve, t) * options.gravity;
-  for (std::size_t i = 0; i < force.size(); ++i) force[i] = weight[i] * g;
-  for (const auto& load : parts.loads) load->add(t, force);
-  for (std::size_t p = 0; p < parts.row_pools.size(); ++p) {
-    const RowPool& pool = *parts.row_pools[p];
-    auto& all = pool.law == RowLaw::compliant ? target : prescribed;
-    pool.update(t, std::span(all).subspan(at(system->first_row(static_cast<Index>(p))), at(pool.rows())));
-  }
-  std::size_t first = 0;
-  for (const auto& p : parts.prescribers) {
-    p->target(t, std::span(position).subspan(first, p->nodes.size()));
-    first += p->nodes.size();
-  }
-}
-
-// What pools keep from one step to the next, from the positions and multipliers that the step arrived at.
-void World::Impl::accept_memory(const StencilIncrement& increment) {
-  if (system->memory() == 0) return;
-  std::copy_n(state.extra.begin(), memory_before.size(), memory_before.begin());
-  for (Index p = 0; p < static_cast<Index>(system->parts().row_pools.size()); ++p) {
-    const RowPool& pool = *system->parts().row_pools[at(p)];
+// The state at rest, and who advances it.
+void World::Impl::begin_state() {
+  const SystemParts& parts = system().parts();
+  const std::size_t n = at(system().nodes());
+  state.x = parts.rest;
+  state.v.assign(n, Vec3{});
+  state.lambda.assign(at(system().rows()), 0.0);
+  state.reactions.assign(n, Vec3{});
+  layout.pools = at(system().memory());
+  layout.scheme = options.scheme->memory(n);
+  // Last increment's length and suggestion for the next, then velocities before it.
+  layout.error = options.time_error > 0 && options.scheme->has_inertia() ? 2 + 3 * n : 0;
+  state.extra.assign(layout.size(), 0.0);
+  for (Index p = 0; p < static_cast<Index>(parts.row_pools.size()); ++p) {
+    const RowPool& pool = *parts.row_pools[at(p)];
     if (pool.memory() == 0) continue;
-    const auto first = at(system->first_memory(p)), count = static_cast<std::size_t>(pool.memory());
-    pool.accept({increment.t0, increment.t1, std::span<const double>(memory_before).subspan(first, count)},
-                std::span<const double>(lambda_trial).subspan(at(system->first_row(p)), at(pool.rows())),
-                std::span(state.extra).subspan(first, count));
+    pool.start(std::span(state.extra)
+                   .subspan(at(system().first_memory(p)), static_cast<std::size_t>(pool.memory())));
   }
-  const Assembly& assembly = newton->assembly();
-  for (Index p = 0; p < static_cast<Index>(system->parts().stencil_pools.size()); ++p) {
-    const StencilPool& pool = *system->parts().stencil_pools[at(p)];
-    if (pool.memory() == 0) continue;
-    const auto first = at(system->first_stencil_memory(p)), count = static_cast<std::size_t>(pool.memory());
-    StencilRequest request = assembly.request(p, Want::value, x_trial);
-    request.increment = increment;
-    request.memory = std::span<const double>(memory_before).subspan(first, count);
-    pool.accept(request, std::span(state.extra).subspan(first, count));
-  }
-}
-
-// Nodes of the trial positions that passed through something since the increment began; where asked, they are
-// put where they met it.
-Index World::Impl::count_passing(const StencilIncrement& increment, bool stop) {
-  if (!system->has_barrier()) return 0;
-  Index count = 0;
-  for (const auto& pool : system->parts().stencil_pools) {
-    if (!pool->has_barrier()) continue;
-    count += pool->passing(increment, x_trial, stop ? std::span<Vec3>(x_trial) : std::span<Vec3>());
-  }
-  return count;
-}
-
-SaddleProblem World::Impl::problem_at(double t) {
-  evaluate_data(t);
-  SaddleProblem problem;
-  problem.force = force;
-  problem.target = target;
-  problem.prescribed = prescribed;
-  problem.position = position;
-  problem.t0 = state.t;
-  problem.t1 = t;
-  problem.memory = std::span<const double>(state.extra).first(at(system->memory()));
-  problem.increment = {0, state.x, state.t, t};
-  return problem;
-}
-
-SaddleOptions World::Impl::saddle_options(const Allowance& allowance) const {
-  SaddleOptions saddle;
-  saddle.max_iterations = allowance.iterations;
-  if (allowance.keep_unfinished) saddle.budget = allowance.iterations;
-  saddle.max_factorizations = allowance.factorizations;
-  saddle.patient_iterations =
-      allowance.patient_iterations > 0 ? allowance.patient_iterations : allowance.iterations;
-  saddle.patient_factorizations =
-      allowance.patient_factorizations > 0 ? allowance.patient_factorizations : allowance.factorizations;
-  saddle.definiteness = options.definiteness;
-  saddle.force_tolerance = options.force_tolerance;
-  saddle.row_tolerance = options.row_tolerance;
-  return saddle;
-}
-
-Result<void> World::Impl::replace_stencils(std::vector<std::shared_ptr<const StencilPool>> pools) {
-  SystemParts parts = system->parts();
-  parts.stencil_pools = std::move(pools);
-  const StageSeconds spent = newton->seconds();
-  if (auto r = make_method(std::move(parts), true); !r) return r;
-  newton->add_seconds(spent);
-  return {};
-}
-
-World::Impl::Surroundings World::Impl::look_around(std::span<const Vec3> x, bool solved) {
-  Surroundings found;
-  if (!system->has_followers()) return found;
-  auto pools = system->parts().stencil_pools;
-  for (std::size_t p = 0; p < pools.size(); ++p) {
-    if (!pools[p]->follows()) continue;
-    FollowRequest request{{}, state.x, x, solved, parallel.get()};
-    if (!solved) {
-      request.memory = std::span<const double>(state.extra)
-                           .subspan(at(system->first_stencil_memory(static_cast<Index>(p))),
-                                    static_cast<std::size_t>(pools[p]->memory()));
-    }
-    FollowAnswer answer = pools[p]->followed(request);
-    found.crossed += answer.crossed;
-    found.passing += answer.passing;
-    if (!answer.pool) continue;
-    found.changed = true;
-    pools[p] = std::move(answer.pool);
-  }
-  if (!found.changed) return found;
-  if (auto r = replace_stencils(std::move(pools)); !r) found.error = r.error();
-  return found;
+  data.emplace(system(), options, gravity_mass());
+  controller.emplace(StepContext{options, builder.bodies(), parallel, methods, *data, state, layout}, amounts,
+                     interrupt);
+  controller->stepper().on_progress(progress);
 }
 
 Result<void> World::compile() {
@@ -332,39 +205,44 @@ Result<void> World::set_amount(EffectId effect, double amount) {
   return {};
 }
 
-void World::Impl::save_amounts(std::vector<double>& all) const {
-  for (const auto& instance : instances) {
-    if (const Amount* a = instance->amount()) a->save(all);
-  }
+StepReport World::step(double h) {
+  return step(h, {});
 }
 
-void World::Impl::load_amounts(std::span<const double> all) {
-  for (const auto& instance : instances) {
-    if (Amount* a = instance->amount()) a->load(all);
-  }
+StepReport World::step(double h, const StepBudget& budget) {
+  Impl& w = *impl_;
+  if (auto r = w.compile(); !r) return invalid_step(r.error(), w.state.t);
+  return w.controller->step(h, budget);
 }
 
-bool World::Impl::amounts_fit(std::span<const double> all) const {
-  for (const auto& instance : instances) {
-    if (instance->amount() && !Amount::take(all)) return false;
-  }
-  return all.empty();
+StepReport World::advance(double h) {
+  Impl& w = *impl_;
+  if (auto r = w.compile(); !r) return invalid_step(r.error(), w.state.t);
+  return w.controller->advance(h);
 }
 
-void World::Impl::begin_amounts(double t0, double t1) {
-  const bool quasi_static = !options.scheme->has_inertia();
-  for (const auto& instance : instances) {
-    // In dynamics a new value holds from the next step on; statics ramps to it.
-    if (Amount* a = instance->amount()) a->begin(quasi_static ? t0 : t1, t1);
-  }
+StepReport World::follow(double length) {
+  Impl& w = *impl_;
+  if (auto r = w.compile(); !r) return invalid_step(r.error(), w.state.t);
+  return w.controller->follow(length);
+}
+
+void World::cancel() {
+  impl_->interrupt.request();
+}
+
+std::string World::method() const {
+  if (!impl_->compile()) return {};
+  return impl_->methods.description();
 }
 
 void World::stop_when(std::function<bool()> asked) {
-  impl_->stop_asked = std::move(asked);
+  impl_->interrupt.ask(std::move(asked));
 }
 
 void World::on_progress(std::function<void(const ProgressInfo&)> callback) {
   impl_->progress = std::move(callback);
+  if (impl_->controller) impl_->controller->stepper().on_progress(impl_->progress);
 }
 
 }  // namespace isochor

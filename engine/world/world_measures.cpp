@@ -8,9 +8,9 @@
 
 namespace isochor {
 
-std::vector<Vec3> World::Impl::momenta() const {
+std::vector<Vec3> World::Impl::momenta() {
   std::vector<Vec3> out(state.v.size());
-  newton->assembly().mass_times(state.v, out);
+  assembly().mass_times(state.v, out);
   return out;
 }
 
@@ -18,20 +18,20 @@ BodyMeasures World::measures(BodyId body) const {
   Impl& w = *impl_;
   if (!w.compile()) return {};
   const BodyData& b = w.builder.body(body);
-  BodyMeasures m = measure_body(b, w.system->parts(), w.state.x);
+  BodyMeasures m = measure_body(b, w.system().parts(), w.state.x);
   m.name = b.name;
   const std::vector<Vec3> moving = w.momenta();
   for (Index i = b.first_node; i < b.first_node + b.mesh.node_count(); ++i) {
-    m.mass += w.system->parts().mass[at(i)];
+    m.mass += w.system().parts().mass[at(i)];
     m.linear_momentum += moving[at(i)];
     m.angular_momentum += cross(w.state.x[at(i)], moving[at(i)]);
-    m.center_of_mass += w.system->parts().mass[at(i)] * w.state.x[at(i)];
+    m.center_of_mass += w.system().parts().mass[at(i)] * w.state.x[at(i)];
   }
   m.center_of_mass = (1 / m.mass) * m.center_of_mass;
   // What the rows of the body leave over, summed: the nodal rows of a region add up to its volume change less
   // what their compliance grants. A body with one-field elements grants itself whatever it does.
   const std::vector<double> theta = w.row_residuals();
-  const auto& pools = w.system->parts().row_pools;
+  const auto& pools = w.system().parts().row_pools;
   for (std::size_t p = 0; p < pools.size(); ++p) {
     const bool of_body =
         pools[p]->law == RowLaw::compliant &&
@@ -43,7 +43,7 @@ BodyMeasures World::measures(BodyId body) const {
                             return v.pool == pools[p]->stencil_pool;
                           });
     if (!of_body && !spanning) continue;
-    const auto first = at(w.system->first_row(static_cast<Index>(p)));
+    const auto first = at(w.system().first_row(static_cast<Index>(p)));
     double sum = 0, volume = 0;
     for (std::size_t r = 0; r < at(pools[p]->rows()); ++r) {
       sum += theta[first + r];
@@ -59,8 +59,8 @@ double World::elastic_energy() const {
   Impl& w = *impl_;
   if (!w.compile()) return 0;
   w.evaluate_state(Want::value);
-  double energy = w.newton->assembly().energy();
-  for (const ComplianceEntry& e : w.system->compliance()) {
+  double energy = w.assembly().energy();
+  for (const ComplianceEntry& e : w.system().compliance()) {
     const double product = e.value * w.state.lambda[at(e.row)] * w.state.lambda[at(e.col)];
     energy += e.row == e.col ? 0.5 * product : product;
   }
@@ -89,20 +89,21 @@ double work_on(std::span<const Vec3> force, std::span<const Vec3> x, std::span<c
 // potential. The strain is that of the positions: the multipliers of some schemes belong to other times, and
 // an error of theirs counts by its square then. At the state, evaluated.
 double World::Impl::law_energy() {
-  if (system->laws().empty()) return 0;
-  std::vector<double> phi(at(system->rows()));
-  newton->assembly().row_values(phi);
+  if (system().laws().empty()) return 0;
+  std::vector<double> phi(at(system().rows()));
+  assembly().row_values(phi);
   double energy = 0;
-  for (const auto& law : system->laws()) {
-    const RowPool& pool = *system->parts().row_pools[at(law.row_pool)];
-    const auto first = at(system->first_row(law.row_pool)), rows = at(pool.rows());
+  for (const auto& law : system().laws()) {
+    const RowPool& pool = *system().parts().row_pools[at(law.row_pool)];
+    const auto first = at(system().first_row(law.row_pool)), rows = at(pool.rows());
     const auto memory =
         std::span<const double>(state.extra)
-            .subspan(at(system->first_memory(law.row_pool)), static_cast<std::size_t>(pool.memory()));
+            .subspan(at(system().first_memory(law.row_pool)), static_cast<std::size_t>(pool.memory()));
     std::vector<double> strain(rows);
     energy -= pool.evaluate_law({state.t, state.t, memory},
                                 std::span<const double>(state.lambda).subspan(first, rows), strain, {});
-    for (std::size_t r = first; r < first + rows; ++r) energy += state.lambda[r] * (phi[r] - target[r]);
+    for (std::size_t r = first; r < first + rows; ++r)
+      energy += state.lambda[r] * (phi[r] - data->target()[r]);
   }
   return energy;
 }
@@ -111,16 +112,17 @@ Energies World::energies() const {
   Energies e;
   Impl& w = *impl_;
   if (!w.compile()) return e;
-  const SystemParts& parts = w.system->parts();
-  if (w.system->prescribed_rows() > 0) {
-    std::vector<double> phi(w.prescribed.size()), rest_phi(phi.size());
-    Assembly& assembly = w.newton->assembly();
-    w.evaluate_data(w.state.t);
-    assembly.evaluate(Want::value, Definiteness::exact, parts.rest, w.state.lambda, w.prescribed);
+  const SystemParts& parts = w.system().parts();
+  if (w.system().prescribed_rows() > 0) {
+    std::vector<double> phi(w.data->prescribed().size()), rest_phi(phi.size());
+    Assembly& assembly = w.assembly();
+    w.data->evaluate(w.system(), w.state.t);
+    assembly.evaluate(Want::value, Definiteness::exact, parts.rest, w.state.lambda, w.data->prescribed());
     assembly.prescribed_row_values(rest_phi);
     w.evaluate_state(Want::value);
     assembly.prescribed_row_values(phi);
-    for (std::size_t r = 0; r < phi.size(); ++r) e.pressures += w.prescribed[r] * (phi[r] - rest_phi[r]);
+    for (std::size_t r = 0; r < phi.size(); ++r)
+      e.pressures += w.data->prescribed()[r] * (phi[r] - rest_phi[r]);
   }
   e.elastic = elastic_energy();  // evaluates the state
   e.pressures += w.law_energy();
@@ -128,8 +130,8 @@ Energies World::energies() const {
   std::vector<Vec3> force(w.state.x.size());
   for (const auto& load : parts.loads) load->add(w.state.t, force);
   e.loads = 0 - work_on(force, w.state.x, parts.rest);
-  const Vec3 g = evaluate(w.options.gravity_curve, w.state.t) * w.options.gravity;
-  for (std::size_t i = 0; i < force.size(); ++i) force[i] = w.weight[i] * g;
+  const Vec3 g = w.data->gravity(w.state.t);
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] = w.data->weight()[i] * g;
   e.gravity = 0 - work_on(force, w.state.x, parts.rest);
   return e;
 }

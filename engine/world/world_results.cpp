@@ -9,10 +9,9 @@
 namespace isochor {
 
 void World::Impl::evaluate_state(Want want) {
-  evaluate_data(state.t);
-  newton->assembly().set_increment({0, {}, state.t, state.t},
-                                   std::span<const double>(state.extra).first(at(system->memory())));
-  newton->assembly().evaluate(want, Definiteness::exact, state.x, state.lambda, prescribed);
+  data->evaluate(system(), state.t);
+  assembly().set_increment({0, {}, state.t, state.t}, pool_memory());
+  assembly().evaluate(want, Definiteness::exact, state.x, state.lambda, data->prescribed());
 }
 
 double World::time() const {
@@ -55,27 +54,27 @@ const std::vector<std::string>& World::warnings() const {
 
 std::vector<double> World::Impl::row_residuals() {
   evaluate_state(Want::value);
-  std::vector<double> theta(at(system->rows()));
-  newton->assembly().row_values(theta);
-  for (std::size_t r = 0; r < theta.size(); ++r) theta[r] -= target[r];
-  for (const ComplianceEntry& e : system->compliance()) {
+  std::vector<double> theta(at(system().rows()));
+  assembly().row_values(theta);
+  for (std::size_t r = 0; r < theta.size(); ++r) theta[r] -= data->target()[r];
+  for (const ComplianceEntry& e : system().compliance()) {
     theta[at(e.row)] -= e.value * state.lambda[at(e.col)];
     if (e.row != e.col) theta[at(e.col)] -= e.value * state.lambda[at(e.row)];
   }
-  for (const auto& law : system->laws()) {
-    const RowPool& pool = *system->parts().row_pools[at(law.row_pool)];
-    const auto first = at(system->first_row(law.row_pool)), rows = at(pool.rows());
+  for (const auto& law : system().laws()) {
+    const RowPool& pool = *system().parts().row_pools[at(law.row_pool)];
+    const auto first = at(system().first_row(law.row_pool)), rows = at(pool.rows());
     std::vector<double> strain(rows);
     const auto memory =
         std::span<const double>(state.extra)
-            .subspan(at(system->first_memory(law.row_pool)), static_cast<std::size_t>(pool.memory()));
+            .subspan(at(system().first_memory(law.row_pool)), static_cast<std::size_t>(pool.memory()));
     pool.evaluate_law({state.t, state.t, memory}, std::span<const double>(state.lambda).subspan(first, rows),
                       strain, {});
     for (std::size_t r = 0; r < rows; ++r) theta[first + r] -= strain[r];
   }
-  for (std::size_t r = 0; system->has_bounds() && r < theta.size(); ++r) {
-    const double d = system->row_metric()[r], l = state.lambda[r];
-    theta[r] = d * (std::clamp(l + theta[r] / d, system->row_lower()[r], system->row_upper()[r]) - l);
+  for (std::size_t r = 0; system().has_bounds() && r < theta.size(); ++r) {
+    const double d = system().row_metric()[r], l = state.lambda[r];
+    theta[r] = d * (std::clamp(l + theta[r] / d, system().row_lower()[r], system().row_upper()[r]) - l);
   }
   return theta;
 }
@@ -84,22 +83,22 @@ BodyFields World::fields(BodyId body) const {
   Impl& w = *impl_;
   if (!w.compile()) return {};
   w.evaluate_state(Want::gradient);
-  const SystemParts& parts = w.system->parts();
+  const SystemParts& parts = w.system().parts();
   std::vector<std::span<const double>> multipliers;
   for (Index p = 0; p < static_cast<Index>(parts.stencil_pools.size()); ++p) {
-    multipliers.push_back(w.newton->assembly().function_multipliers(p));
+    multipliers.push_back(w.assembly().function_multipliers(p));
   }
   std::vector<double> nodal(parts.rest.size(), std::nan(""));
-  for (const auto& instance : w.instances) instance->node_multipliers({*w.system, w.state}, nodal);
+  for (const auto& instance : w.instances) instance->node_multipliers({w.system(), w.state}, nodal);
   BodyFields fields = recover_fields({w.builder.body(body), parts, w.state.x, multipliers, nodal});
-  add_surface_fields(w.instances, {*w.system, w.state}, w.builder.body(body), fields);
+  add_surface_fields(w.instances, {w.system(), w.state}, w.builder.body(body), fields);
   return fields;
 }
 
 std::vector<Gauge> World::gauges() const {
   std::vector<Gauge> out;
   if (!impl_->compile()) return out;
-  for (const auto& instance : impl_->instances) instance->gauges({*impl_->system, impl_->state}, out);
+  for (const auto& instance : impl_->instances) instance->gauges({impl_->system(), impl_->state}, out);
   return out;
 }
 
@@ -109,7 +108,7 @@ std::array<Vec3, 2> World::reaction(EffectId effect) const {
   const auto i = static_cast<std::size_t>(effect);
   if (!w.compile() || i >= w.held_by.size()) return sum;
   for (const HeldDirection& h : w.held_by[i]) {
-    const Vec3 f = dot(h.direction, w.reactions[at(h.node)]) * h.direction;
+    const Vec3 f = dot(h.direction, w.state.reactions[at(h.node)]) * h.direction;
     sum[0] += f;
     sum[1] += cross(w.state.x[at(h.node)], f);
   }
@@ -122,7 +121,7 @@ double World::constitutive_residual() const {
   const std::vector<double> theta = w.row_residuals();
   double worst = 0;
   for (std::size_t r = 0; r < theta.size(); ++r) {
-    worst = std::max(worst, std::abs(theta[r]) / w.system->row_measure()[r]);
+    worst = std::max(worst, std::abs(theta[r]) / w.system().row_measure()[r]);
   }
   return worst;
 }
@@ -131,13 +130,13 @@ WorldSize World::size() const {
   WorldSize s;
   Impl& w = *impl_;
   if (!w.compile()) return s;
-  s.nodes = w.system->nodes();
-  s.displacement_unknowns = w.system->free_unknowns();
-  s.multipliers = w.system->rows();
-  s.matrix_size = w.system->kkt().size;
-  s.matrix_nonzeros = w.system->kkt().nonzeros();
-  s.factor_nonzeros = w.newton->factor_nonzeros();
-  s.engine_bytes = w.newton->assembly().memory_bytes();
+  s.nodes = w.system().nodes();
+  s.displacement_unknowns = w.system().free_unknowns();
+  s.multipliers = w.system().rows();
+  s.matrix_size = w.system().kkt().size;
+  s.matrix_nonzeros = w.system().kkt().nonzeros();
+  s.factor_nonzeros = w.methods.chosen().factor_nonzeros();
+  s.engine_bytes = w.assembly().memory_bytes();
   return s;
 }
 

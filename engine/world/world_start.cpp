@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/step/time_scheme.h"
 #include "engine/world/world_impl.h"
 
 namespace isochor {
@@ -34,11 +35,11 @@ Result<void> World::set_velocities(BodyId body, std::span<const Vec3> velocities
     return Error{"set_velocities: the scheme of this world is " + std::string(w.options.scheme->name()) +
                  ", in which nothing has a velocity; use a scheme of dynamics"};
   }
-  w.settled.reset();  // what a host sets is where it wants to go on from
+  w.controller->settled().reset();  // what a host sets is where it wants to go on from
   const BodyData& b = w.builder.body(body);
   if (auto r = check_nodes("set_velocities", "velocities", b, velocities); !r) return r;
   std::copy(velocities.begin(), velocities.end(), w.state.v.begin() + b.first_node);
-  const auto past = w.scheme_memory();
+  const auto past = w.layout.of_scheme(w.state.extra);
   std::fill(past.begin(), past.end(), 0.0);
   return {};
 }
@@ -49,7 +50,7 @@ Result<void> World::set_positions(BodyId body, std::span<const Vec3> positions) 
   if (!w.builder.has_body(body)) {
     return Error{"set_positions: there is no body number " + std::to_string(static_cast<Index>(body))};
   }
-  w.settled.reset();  // what a host sets is where it wants to go on from
+  w.controller->settled().reset();  // what a host sets is where it wants to go on from
   const BodyData& b = w.builder.body(body);
   if (auto r = check_nodes("set_positions", "positions", b, positions); !r) return r;
   const auto first = at(b.first_node);
@@ -57,11 +58,11 @@ Result<void> World::set_positions(BodyId body, std::span<const Vec3> positions) 
   std::fill_n(w.state.v.begin() + static_cast<std::ptrdiff_t>(first), positions.size(), Vec3{});
   std::fill(w.state.lambda.begin(), w.state.lambda.end(), 0.0);
   // Stencils and the scheme have no past either.
-  for (Index p = 0; p < static_cast<Index>(w.system->parts().stencil_pools.size()); ++p) {
-    const auto kept = w.state.extra.begin() + w.system->first_stencil_memory(p);
-    std::fill_n(kept, w.system->parts().stencil_pools[at(p)]->memory(), 0.0);
+  for (Index p = 0; p < static_cast<Index>(w.system().parts().stencil_pools.size()); ++p) {
+    const auto kept = w.state.extra.begin() + w.system().first_stencil_memory(p);
+    std::fill_n(kept, w.system().parts().stencil_pools[at(p)]->memory(), 0.0);
   }
-  const auto past = w.scheme_memory();
+  const auto past = w.layout.of_scheme(w.state.extra);
   std::fill(past.begin(), past.end(), 0.0);
   return {};
 }

@@ -1,0 +1,55 @@
+// How a world advances: single steps, steps within a budget, adaptive increments, steps along a path of
+// equilibria. Decides on lengths; a Stepper makes the increments.
+#pragma once
+
+#include "engine/scene/amounts.h"
+#include "engine/step/interrupt.h"
+#include "engine/step/stepper.h"
+#include "engine/step/time_error.h"
+
+namespace isochor {
+
+class Controller {
+ public:
+  Controller(const StepContext& context, Amounts& amounts, Interrupt& interrupt);
+
+  // As in World.
+  StepReport step(double h, const StepBudget& budget);
+  StepReport advance(double h);
+  StepReport follow(double length);
+
+  Stepper& stepper() { return stepper_; }
+  // The last state that a step arrived at in balance, while the present one is unfinished.
+  std::optional<State>& settled() { return settled_; }
+
+ private:
+  struct Advance;
+  struct Clock;
+  double largest_turn(double t0, double t1) const;
+  double largest_entry(double t0, double t1);
+  void begin_amounts(double t0, double t1);
+  SaddleReport attempt_within(double h, const StepBudget& budget);
+  void describe_single(const SaddleReport& solve, double t_target, StepReport& report);
+  double next_length(const Advance& a);
+  bool make_increment(Advance& a);
+  bool took_increment(Advance& a, double dt, const SaddleReport& solve);
+  bool go_on_after_failure(Advance& a, double dt, const SaddleReport& solve);
+  bool rescued(Advance& a, double dt);
+  void give_up(Advance& a, double dt, const SaddleReport& solve, bool hopeless);
+  bool give_back_unfinished(StepReport& report);
+  SaddleReport follow_once(double length, StepReport& report);
+  void take_cancel(StepReport& report);
+  StepReport cancelled();
+  void finish(const Clock& clock, StepReport& report);
+
+  StepContext context_;
+  Amounts& amounts_;
+  Interrupt& interrupt_;
+  Stepper stepper_;
+  TimeError time_error_;
+  std::vector<double> amounts_before_;
+  std::optional<State> settled_;
+  std::vector<Vec3> ahead_;  // where velocities carry the nodes
+};
+
+}  // namespace isochor

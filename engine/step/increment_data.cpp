@@ -1,0 +1,46 @@
+#include "engine/step/increment_data.h"
+
+namespace isochor {
+
+IncrementData::IncrementData(const System& system, const WorldOptions& options, std::vector<double> weight)
+    : options_(options),
+      weight_(std::move(weight)),
+      force_(at(system.nodes())),
+      target_(at(system.rows())),
+      prescribed_(at(system.prescribed_rows())),
+      position_(system.free_bases().size()) {
+  evaluate(system, 0);
+}
+
+void IncrementData::evaluate(const System& system, double t) {
+  const SystemParts& parts = system.parts();
+  const Vec3 g = gravity(t);
+  for (std::size_t i = 0; i < force_.size(); ++i) force_[i] = weight_[i] * g;
+  for (const auto& load : parts.loads) load->add(t, force_);
+  for (std::size_t p = 0; p < parts.row_pools.size(); ++p) {
+    const RowPool& pool = *parts.row_pools[p];
+    auto& all = pool.law == RowLaw::compliant ? target_ : prescribed_;
+    pool.update(t, std::span(all).subspan(at(system.first_row(static_cast<Index>(p))), at(pool.rows())));
+  }
+  std::size_t first = 0;
+  for (const auto& p : parts.prescribers) {
+    p->target(t, std::span(position_).subspan(first, p->nodes.size()));
+    first += p->nodes.size();
+  }
+}
+
+SaddleProblem IncrementData::problem(const System& system, const State& state, double t) {
+  evaluate(system, t);
+  SaddleProblem problem;
+  problem.force = force_;
+  problem.target = target_;
+  problem.prescribed = prescribed_;
+  problem.position = position_;
+  problem.t0 = state.t;
+  problem.t1 = t;
+  problem.memory = std::span<const double>(state.extra).first(at(system.memory()));
+  problem.increment = {0, state.x, state.t, t};
+  return problem;
+}
+
+}  // namespace isochor

@@ -1,0 +1,186 @@
+#include "engine/step/methods.h"
+
+#include <algorithm>
+
+#include "engine/solve/dual_ascent.h"
+#include "engine/solve/newton/unsymmetric_newton.h"
+#include "engine/solve/position_based.h"
+#include "engine/step/time_scheme.h"
+
+namespace isochor {
+
+namespace {
+
+constexpr std::size_t large_scene = 60000;  // displacements
+
+bool climbs(Method method) {
+  return method == Method::dual_ascent || method == Method::augmented_ascent;
+}
+
+SolverKind kind_of(const WorldOptions& options) {
+  return static_cast<SolverKind>(options.solver);
+}
+
+// How many rows are treated how, in words.
+std::string count_rows(const System& system) {
+  const auto count = [](std::span<const Index> rows) { return std::to_string(rows.size()); };
+  return std::to_string(system.free_unknowns()) + " displacements; rows: " + count(system.kept_rows()) +
+         " in the matrix, " + count(system.condensed_rows()) + " condensed, " +
+         count(system.bordered_rows()) + " bordered, " + count(system.dual_rows()) + " dual";
+}
+
+}  // namespace
+
+// Iterations win where matrices are large. They cannot tell an inertia, though, so that equilibria are left
+// to factors as long as these fit; inertia of mass keeps a step of dynamics away from that.
+bool Methods::large(const SystemParts& parts) const {
+  const bool plain = options_.method == Method::automatic || options_.method == Method::saddle_point;
+  return 3 * parts.rest.size() >= large_scene && plain && options_.solver == Solver::automatic &&
+         options_.scheme->has_inertia() && !options_.scheme->follows_paths();
+}
+
+Result<void> Methods::choose(SystemParts parts) {
+  if (std::string why = incompatible(parts, options_); !why.empty()) return Error{std::move(why)};
+  return make(std::move(parts), false);
+}
+
+Result<void> Methods::replace_stencils(std::vector<std::shared_ptr<const StencilPool>> pools) {
+  SystemParts parts = system_->parts();
+  parts.stencil_pools = std::move(pools);
+  const StageSeconds spent = chosen_->seconds();
+  if (auto r = make(std::move(parts), true); !r) return r;
+  chosen_->add_seconds(spent);
+  return {};
+}
+
+Result<void> Methods::compile_system(SystemParts parts, bool ascent) {
+  parts.treatment = treatment_of(options_.method);
+  // Condensed rows make the stiffness as stiff as they are, which is no matter to a factorization but slows
+  // an iteration.
+  if (options_.method == Method::automatic && (large(parts) || options_.solver == Solver::iterative))
+    parts.treatment = RowTreatment::saddle;
+  parts.border_wide_rows = !ascent;
+  auto compiled = System::compile(std::move(parts));
+  if (!compiled) return Error{compiled.error()};
+  system_ = std::move(compiled).value();
+  if (ascent && static_cast<Index>(system_->dual_rows().size()) != system_->rows()) {
+    return Error{
+        "world: method " + std::string(to_string(options_.method)) +
+        " takes all rows as dual, but an effect asks for another treatment of its rows; leave it automatic"};
+  }
+  if (const std::string what = PositionBased::unsupported(*system_);
+      options_.method == Method::position_based && !what.empty()) {
+    return Error{"world: method position_based has no answer for this scene: " + what +
+                 "; use another method"};
+  }
+  if (kind_of(options_) == SolverKind::cholmod_supernodal && !system_->kept_rows().empty()) {
+    return Error{"world: solver cholmod_supernodal factors positive definite matrices, and " +
+                 std::to_string(system_->kept_rows().size()) +
+                 " rows are in the matrix; use method condensation with element rows and nu < 0.5, method "
+                 "dual_gradients or augmented_gradients, or another solver"};
+  }
+  return {};
+}
+
+// What replaces a system of the same unknowns works in its memory: fresh pages cost more than all else here.
+// Should that run out, there is no way back.
+std::unique_ptr<LinearSolver> Methods::release_solver(std::unique_ptr<LinearSolver>& unsymmetric) {
+  auto solver = chosen_->release_solver();
+  unsymmetric = chosen_->release_unsymmetric();
+  path_follower_ = nullptr;
+  chosen_.reset();
+  return solver;
+}
+
+Result<void> Methods::make(SystemParts parts, bool keep_solvers) {
+  // Augmented where the stiffness is not definite, and rows in the matrix where that is not enough.
+  made_.clear();
+  stand_ins_.clear();
+  if (treatment_of(options_.method) == RowTreatment::dual || options_.method == Method::augmented_ascent)
+    stand_ins_.push_back(Method::augmented_gradients);
+  if (!stand_ins_.empty() || options_.method == Method::augmented_gradients)
+    stand_ins_.push_back(Method::saddle_point);
+  made_.resize(stand_ins_.size());
+  // Next to a limit point the sign of a vanishing eigenvalue counts.
+  SolverWishes wishes;
+  wishes.prefer_iterative = large(parts);
+  wishes.single_precision = !options_.scheme->follows_paths();
+  if (auto r = compile_system(std::move(parts), climbs(options_.method)); !r) return r;
+  wishes.prefer_iterative = wishes.prefer_iterative && !system_->couples();
+  std::unique_ptr<LinearSolver> solver, unsymmetric;
+  if (keep_solvers)
+    solver = release_solver(unsymmetric);
+  else
+    solver = make_linear_solver(kind_of(options_), wishes);
+  if (system_->couples() && !unsymmetric) unsymmetric = make_unsymmetric_solver(kind_of(options_));
+  if (!solver) return Error{"world: this build does not have the linear solver that is asked for"};
+  make_chosen(std::move(solver), std::move(unsymmetric));
+  counts_ = count_rows(*system_);
+  return {};
+}
+
+void Methods::make_chosen(std::unique_ptr<LinearSolver> solver, std::unique_ptr<LinearSolver> unsymmetric) {
+  if (climbs(options_.method)) {
+    DualAscentOptions ascent;
+    ascent.augmented = ascent.scaled = options_.method == Method::augmented_ascent;
+    chosen_ = std::make_unique<DualAscent>(system_, parallel_, std::move(solver), ascent);
+  } else if (options_.method == Method::position_based) {
+    chosen_ = std::make_unique<PositionBased>(system_, parallel_, std::move(solver), options_.sweeps);
+  } else if (options_.scheme->follows_paths()) {
+    auto follower = std::make_unique<PathFollower>(system_, parallel_, std::move(solver));
+    path_follower_ = follower.get();
+    chosen_ = std::move(follower);
+  } else if (system_->couples()) {
+    chosen_ =
+        std::make_unique<UnsymmetricNewton>(system_, parallel_, std::move(solver), std::move(unsymmetric));
+  } else {
+    chosen_ = std::make_unique<Newton>(system_, parallel_, std::move(solver));
+  }
+  chosen_->set_interrupt(interrupt_);
+}
+
+// Rows and multipliers are those of this world, only their treatment differs.
+std::unique_ptr<SaddlePoint> Methods::make_stand_in(Method method) const {
+  SystemParts parts = system_->parts();
+  parts.treatment = treatment_of(method);
+  parts.border_wide_rows = true;
+  auto compiled = System::compile(std::move(parts));
+  if (!compiled) return nullptr;
+  if (kind_of(options_) == SolverKind::cholmod_supernodal && !compiled.value()->kept_rows().empty())
+    return nullptr;
+  auto solver = make_linear_solver(kind_of(options_), SolverWishes{});
+  if (!solver) return nullptr;
+  auto other = std::make_unique<Newton>(std::move(compiled).value(), parallel_, std::move(solver));
+  other->set_interrupt(interrupt_);
+  return other;
+}
+
+bool Methods::may_stand_in(Method method) const {
+  return std::find(stand_ins_.begin(), stand_ins_.end(), method) != stand_ins_.end();
+}
+
+SaddlePoint* Methods::stand_in(Method method) {
+  for (std::size_t i = 0; i < stand_ins_.size(); ++i) {
+    if (stand_ins_[i] != method) continue;
+    if (!made_[i]) made_[i] = make_stand_in(method);
+    return made_[i].get();
+  }
+  return nullptr;
+}
+
+void Methods::set_interrupt(std::function<bool()> asked) {
+  interrupt_ = std::move(asked);
+  if (chosen_) chosen_->set_interrupt(interrupt_);
+  for (const auto& other : made_) {
+    if (other) other->set_interrupt(interrupt_);
+  }
+}
+
+std::string Methods::description() const {
+  const LinearSolver& solver = chosen_->linear_solver();
+  const std::string why = solver.reason();
+  return std::string(to_string(options_.method)) + ": " + counts_ + "; " + std::string(solver.name()) +
+         (why.empty() ? "" : ", " + why);
+}
+
+}  // namespace isochor
