@@ -69,7 +69,8 @@ bool DualAscent::minimize(const SaddleProblem& p, const SaddleOptions& options, 
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     if (options.budget > 0 && report.iterations + report.corrections >= options.budget) break;
     if (report.factorizations >= options.max_factorizations ||
-        (!whole && iteration >= options.patient_iterations))
+        (!whole && iteration >= options.patient_iterations) ||
+        report.inner_work() >= options.most_inner_work())
       break;
     {
       const Stopwatch watch(seconds_.evaluate);
@@ -253,6 +254,15 @@ bool DualAscent::climb(std::span<double> lambda, SaddleReport& report) {
 
 SaddleReport DualAscent::solve(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
                                std::span<double> lambda) {
+  const std::int64_t linear_before = kkt_.linear_iterations();
+  SaddleReport report = ascend(p, options, x, lambda);
+  report.linear_iterations = kkt_.linear_iterations() - linear_before;
+  return report;
+}
+
+SaddleReport DualAscent::ascend(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
+                                std::span<double> lambda) {
+  const std::int64_t linear_before = kkt_.linear_iterations();
   SaddleReport report;
   if (!all_finite(p)) {
     report.status = SaddleStatus::not_finite;
@@ -288,6 +298,7 @@ SaddleReport DualAscent::solve(const SaddleProblem& p, const SaddleOptions& opti
       report.status = SaddleStatus::cancelled;
       return report;
     }
+    report.linear_iterations = kkt_.linear_iterations() - linear_before;
     tolerance = std::min(1e-2, 0.1 * report.force_residual);
     if (k > 0 && progress) progress(k, report.force_residual, report.row_residual);
     if (done) return report;
@@ -298,7 +309,8 @@ SaddleReport DualAscent::solve(const SaddleProblem& p, const SaddleOptions& opti
       too_slow = left >= farther || std::log(left) / std::log(farther / left) * window > most - k;
       farther = left;
     }
-    const bool spent = options.budget > 0 && report.iterations + report.corrections >= options.budget;
+    const bool spent = (options.budget > 0 && report.iterations + report.corrections >= options.budget) ||
+                       report.inner_work() >= options.most_inner_work();
     if (k >= most || too_slow || spent) {
       report.status = SaddleStatus::iteration_limit;
       if (too_slow) report.message = "the multipliers converge too slowly";

@@ -31,6 +31,8 @@ class DualAscent : public SaddlePoint {
                      std::span<double> lambda) override;
 
  private:
+  SaddleReport ascend(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
+                      std::span<double> lambda);
   void evaluate(const SaddleProblem& p, Want want, std::span<const Vec3> x, std::span<const double> lambda);
   double lagrangian(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda) const;
   bool minimize(const SaddleProblem& p, const SaddleOptions& options, double tolerance, std::span<Vec3> x,

@@ -15,6 +15,9 @@ struct SaddleOptions {
   int max_factorizations = 1000;  // mending an inertia takes more than one an iteration
   // From so many on, a solve goes on only while it gets somewhere.
   int patient_iterations = 1000, patient_factorizations = 1000;
+  // Of iterations inside of steps (SaddleReport::inner_work()): a solve whose steps take that much of them
+  // gets nowhere.
+  double most_inner_work() const { return 3.0 * max_factorizations; }
   // A body in motion whose steps all go downhill is given several times the limits above.
   bool persistent = false;
   // Residual force against the magnitudes that cancel in it, in the norm sqrt(sum |r_i|^2 / k_i), k_i the
@@ -56,9 +59,17 @@ enum class SaddleStatus : std::uint8_t {
 };
 std::string_view to_string(SaddleStatus status);
 
-struct SaddleReport : SolveCounters {
+struct SaddleReport {
   SaddleStatus status = SaddleStatus::converged;
-  Index negative_pivots = -1;  // of the last factorisation; rows() when the inertia is right
+  int iterations = 0, factorizations = 0, trials = 0;
+  int corrections = 0;                 // further steps on factors at hand
+  int lagged = 0;                      // iterations of a coupled system that held the lag
+  int projected = 0, shifted = 0;      // iterations mended by projection and by a diagonal shift
+  int dual_steps = 0;                  // of dual ascent
+  int stood_in = 0;                    // solves that ended by another method than the one asked for
+  std::int64_t dual_iterations = 0;    // of conjugate gradients on multipliers
+  std::int64_t linear_iterations = 0;  // of an iterative linear solver, for directions
+  Index negative_pivots = -1;          // of the last factorisation; rows() when the inertia is right
   double force_residual = 0, row_residual = 0, linear_residual = 0;
   double step = 0;  // largest displacement of the last step [m]
   std::string message;
@@ -68,7 +79,13 @@ struct SaddleReport : SolveCounters {
   std::vector<std::string> null_rows;
 
   // Counts the work of an earlier solve of the same step in.
-  void add_work(const SaddleReport& earlier) { SolveCounters::operator+=(earlier); }
+  void add_work(const SaddleReport& earlier);
+  // What iterations inside of steps took, in factorizations, roughly: the same on every machine.
+  double inner_work() const {
+    return 0.1 * dual_steps + 0.05 * static_cast<double>(dual_iterations) +
+           0.02 * static_cast<double>(linear_iterations);
+  }
+  double work() const { return factorizations + 0.1 * corrections + inner_work(); }
 };
 
 class SaddlePoint {

@@ -96,9 +96,7 @@ bool Controller::give_back_unfinished(StepReport& report) {
 }
 
 void Controller::finish(const Clock& clock, StepReport& report) {
-  report.seconds = context_.methods.chosen().seconds();
-  report.seconds -= clock.before;
-  report.seconds.total = clock.total();
+  report.seconds = stage_times(context_.methods.chosen().seconds(), clock.before, clock.total());
   report.expected_negative_pivots = context_.system().rows();
   // What was rejected says how the state is that stays.
   if (report.status != StepStatus::converged && report.status != StepStatus::unfinished) {
@@ -166,6 +164,7 @@ StepReport Controller::step(double h, const StepBudget& budget) {
                         state.t);
   }
   StepReport report;
+  stepper_.begin_step();
   stepper_.end().begin_step();
   const double t_target = state.t + h;
   const bool was_settled = !settled_;
@@ -191,6 +190,7 @@ struct Controller::Advance {
   double h = 0, t0 = 0, t_end = 0;
   double increment = 0;  // that is tried next
   int successes = 1;     // in a row
+  double lost = 0;       // work in increments that failed, in factorizations
   StepReport report;
 };
 
@@ -204,6 +204,13 @@ double Controller::next_length(const Advance& a) {
   // increment may come out on any side of it.
   while ((largest_turn(t, t + dt) > most_turn || largest_entry(t, t + dt) > 1) && dt > 1e-9 * a.h) dt *= 0.5;
   return dt;
+}
+
+// Whether increments that failed took so much work that no more are tried, however short they might get.
+bool Controller::lost_too_much(const Advance& a) const {
+  constexpr int few = 5;
+  constexpr double most = 30;  // factorizations for each iteration that an increment may take
+  return a.report.rejected_substeps > few && a.lost > most * context_.options.max_iterations;
 }
 
 // One increment; false when the advance is over.
@@ -242,7 +249,8 @@ bool Controller::took_increment(Advance& a, double dt, const SaddleReport& solve
   }
   a.report.time_error = o.error;
   ++a.report.substeps;
-  a.increment = o.factor * dt;
+  // As short as increments may get, errors are taken as they are.
+  a.increment = std::max(o.factor * dt, std::min(dt, context_.options.smallest_fraction * a.h));
   time_error_.keep(dt, a.increment);
   return true;
 }
@@ -255,12 +263,13 @@ bool Controller::go_on_after_failure(Advance& a, double dt, const SaddleReport& 
   }
   ++a.report.rejected_substeps;
   a.increment = 0.5 * dt;
+  a.lost += solve.work();
   const bool statics = !context_.options.scheme->has_inertia();
   const bool singular = singular_at_once(solve);
   const bool hopeless = solve.status == SaddleStatus::out_of_memory || (singular && !solve.null_rows.empty());
   const bool as_short_as_need_be =
       a.increment < context_.options.smallest_fraction * a.h || (singular && statics);
-  if (!as_short_as_need_be && !hopeless) return true;
+  if (!as_short_as_need_be && !hopeless && !lost_too_much(a)) return true;
   constexpr int most_rescues = 3;
   if (statics && !hopeless && context_.options.transient_rescue && a.report.rescues < most_rescues) {
     if (rescued(a, dt)) return true;
@@ -290,7 +299,10 @@ void Controller::give_up(Advance& a, double dt, const SaddleReport& solve, bool 
   a.report.reason +=
       "; increments shrank to " + number(a.increment / a.h) +
       " of the step, the last equilibrium is at t = " + number(t) +
-      (context_.system().has_bounds()
+      (lost_too_much(a) && a.increment >= context_.options.smallest_fraction * a.h
+           ? ": increments that failed took as much work as " + std::to_string(std::lround(a.lost)) +
+                 " factorizations, and no more of them are tried; take more steps, or another method"
+       : context_.system().has_bounds()
            ? ": the solver found no way on, which where things touch need not mean that there is none; "
              "more "
              "steps, finer or rounder surfaces may help"
@@ -308,6 +320,7 @@ StepReport Controller::advance(double h) {
   a.t0 = state.t;
   a.t_end = state.t + h;
   begin_amounts(a.t0, a.t_end);
+  stepper_.begin_step();
   stepper_.end().begin_step();
   if (time_error_.controls() && time_error_.suggested() > 0)
     a.increment = std::min(h, time_error_.suggested());

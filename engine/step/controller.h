@@ -32,6 +32,7 @@ class Controller {
   void describe_single(const SaddleReport& solve, double t_target, StepReport& report);
   double next_length(const Advance& a);
   bool make_increment(Advance& a);
+  bool lost_too_much(const Advance& a) const;
   bool took_increment(Advance& a, double dt, const SaddleReport& solve);
   bool go_on_after_failure(Advance& a, double dt, const SaddleReport& solve);
   bool rescued(Advance& a, double dt);

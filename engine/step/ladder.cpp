@@ -12,18 +12,19 @@ bool final_word(const SaddleReport& r) {
          r.status == SaddleStatus::out_of_memory;
 }
 
-bool always(Stepper&, const Climb&) {
-  return true;
+bool not_given_up(Stepper&, const Climb& c) {
+  return !c.own_given_up;
 }
 
 // Nodes that were put where they meet an obstacle may have turned over their cells.
 bool guess_failed(Stepper&, const Climb& c) {
-  return c.stuck && (c.from_guess || (c.stopped && c.report.status == SaddleStatus::not_finite));
+  return c.stuck && !c.own_given_up &&
+         (c.from_guess || (c.stopped && c.report.status == SaddleStatus::not_finite));
 }
 
 template <Method method>
 bool stands_in(Stepper& s, const Climb& c) {
-  return c.stuck && !final_word(c.report) && s.methods().may_stand_in(method) &&
+  return c.stuck && !final_word(c.report) && s.methods().may_stand_in(method) && !s.gives_up_on(method) &&
          s.methods().stand_in(method) != nullptr;
 }
 
@@ -43,11 +44,13 @@ SaddleReport solve_by(Stepper& s, Climb& c, const SaddleOptions& options) {
 }
 
 constexpr Rung rungs[] = {
-    {"the method of the world, from inertia's prediction (statics: from the state)", "always", "",
-     Method::automatic, always, solve_here},
+    {"the method of the world, from inertia's prediction (statics: from the state)",
+     "it did not fail in the last two increments of the step, or nothing stands in for it", "",
+     Method::automatic, not_given_up, solve_here},
     {"the same from the state", "the prediction led nowhere", "", Method::automatic, guess_failed,
      solve_from_state},
-    {"augmented_gradients from the state", "a dual method or an ascent is stuck", "stand_ins",
+    {"augmented_gradients from the state",
+     "a dual method or an ascent is stuck, and it did not fail as often itself", "stand_ins",
      Method::augmented_gradients, stands_in<Method::augmented_gradients>,
      solve_by<Method::augmented_gradients>},
     {"saddle_point from the state", "a dual or augmented method is stuck", "stand_ins", Method::saddle_point,

@@ -13,9 +13,10 @@ struct Climb {
   double h = 0;
   SaddleProblem& problem;
   const Allowance& allowance;
-  bool from_guess = false;  // the trial positions are inertia's prediction
-  bool stopped = false;     // nodes of it were put where they meet an obstacle
-  bool stuck = false;       // the first solve found nothing that may be kept
+  bool from_guess = false;    // the trial positions are inertia's prediction
+  bool stopped = false;       // nodes of it were put where they meet an obstacle
+  bool stuck = false;         // the first solve found nothing that may be kept
+  bool own_given_up = false;  // the method of the world failed before in this step (Stepper::gives_up_on())
   SaddleReport report;
 };
 

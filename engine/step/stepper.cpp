@@ -27,6 +27,14 @@ bool stuck_close_by(const SaddleReport& r) {
   return r.status == SaddleStatus::line_search_failed && r.force_residual < close && r.row_residual < close;
 }
 
+// A budget is one for all that an increment takes; without one every solve has the same allowance.
+Allowance what_is_left(Allowance all, const SaddleReport& spent) {
+  if (!all.keep_unfinished) return all;
+  all.iterations = all.patient_iterations = all.iterations - spent.iterations;
+  all.factorizations = all.patient_factorizations = all.factorizations - spent.factorizations;
+  return all;
+}
+
 // Whether a solve ended in a way that leaves an iterate which a budget may keep.
 bool leaves_iterate(const SaddleReport& r) {
   return r.iterations > 0 && r.status != SaddleStatus::diverged && r.status != SaddleStatus::inadmissible &&
@@ -74,8 +82,16 @@ SaddleReport Stepper::solve_by(SaddlePoint& other, const SaddleProblem& problem,
   if (report.status != SaddleStatus::converged) return report;
   SaddleReport last = solve(problem, options);
   last.add_work(report);
-  if (last.status == SaddleStatus::converged) last.stand_ins = 1;
+  if (last.status == SaddleStatus::converged) last.stood_in = 1;
   return last;
+}
+
+// It would fail in the next one too, mostly at the price of all its iterations.
+bool Stepper::gives_up_on(Method method) const {
+  constexpr int most_failures = 2;
+  const auto stand_ins = context_.methods.stand_ins();
+  return !stand_ins.empty() && method != stand_ins.back() &&
+         failures_[static_cast<std::size_t>(method)] >= most_failures;
 }
 
 // A solve that converged to where no state may be has failed like any other.
@@ -89,21 +105,31 @@ void Stepper::judge(double h, const SaddleProblem& problem, SaddleReport& report
 
 // From the trial positions and multipliers up the ladder, until a rung solves it.
 SaddleReport Stepper::climb(Attempt& a) {
-  Climb c{a.h, a.problem, a.left, a.from_guess, false, false, {}};
+  Climb c{a.h, a.problem, a.left, a.from_guess, false, false, gives_up_on(Method::automatic), {}};
   const auto stand_ins = context_.methods.stand_ins();
   const Method last = stand_ins.empty() ? Method::automatic : stand_ins.back();
   show_progress(a.problem.t1);
   c.stopped = surroundings_.passing(a.problem.increment, trial_.x, Surroundings::Passing::stop) > 0;
-  bool first = true;
+  if (c.own_given_up) {
+    c.stuck = true;
+    c.report.status = SaddleStatus::iteration_limit;
+  }
+  bool first = !c.own_given_up;
+  std::array<bool, 8> tried{};
+  Method by = Method::automatic;
   for (const Rung& rung : ladder()) {
     if (!rung.applies(*this, c)) continue;
-    SaddleOptions options = saddle_options(context_.options, a.left);
+    const Allowance left = what_is_left(a.left, c.report);
+    if (left.iterations <= 0 || left.factorizations <= 0) break;
+    SaddleOptions options = saddle_options(context_.options, left);
     // Persistence is for what is tried last.
     options.persistent = a.left.persistent && rung.method == last && !(first && c.from_guess);
     SaddleReport next = rung.run(*this, c, options);
     judge(a.h, a.problem, next);
     next.add_work(c.report);
     c.report = std::move(next);
+    by = rung.method;
+    tried[static_cast<std::size_t>(by)] = true;
     const SaddleStatus status = c.report.status;
     if (first) {
       c.stuck = status != SaddleStatus::converged && status != SaddleStatus::cancelled &&
@@ -112,6 +138,10 @@ SaddleReport Stepper::climb(Attempt& a) {
     }
     first = false;
     if (!c.stuck || status == SaddleStatus::converged) break;
+  }
+  for (std::size_t m = 0; m < tried.size(); ++m) {
+    const bool solved = c.report.status == SaddleStatus::converged && static_cast<Method>(m) == by;
+    if (tried[m]) failures_[m] = solved ? 0 : failures_[m] + 1;
   }
   if (c.report.status == SaddleStatus::converged)
     refine_gradients(a.problem, saddle_options(context_.options, a.left), c.report);
@@ -174,14 +204,10 @@ Stepper::Attempt Stepper::begin(double h) {
 // One climb, and a look around its end; true when it has to be made once more.
 bool Stepper::solve_and_renew(Attempt& a, const Allowance& allowance, int look) {
   const bool last = look + 1 == most_looks;
-  if (allowance.keep_unfinished) {
-    a.left.iterations = a.left.patient_iterations = allowance.iterations - a.report.iterations;
-    a.left.factorizations = a.left.patient_factorizations =
-        allowance.factorizations - a.report.factorizations;
-    if (a.left.iterations <= 0 || a.left.factorizations <= 0) {
-      a.report.status = SaddleStatus::iteration_limit;
-      return false;
-    }
+  a.left = what_is_left(allowance, a.report);
+  if (a.left.iterations <= 0 || a.left.factorizations <= 0) {
+    a.report.status = SaddleStatus::iteration_limit;
+    return false;
   }
   SaddleReport solved = climb(a);
   solved.add_work(a.report);

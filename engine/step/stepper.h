@@ -25,6 +25,10 @@ class Stepper {
   SaddleReport damped_motion(double h);
   // Makes the trial positions and multipliers an equilibrium of the state at t, without inertia.
   void take_equilibrium(double t);
+  // Of a step of several increments: nothing has failed yet.
+  void begin_step() { failures_.fill(0); }
+  // Whether a method that others stand in for failed in so many increments on end that it is left out.
+  bool gives_up_on(Method method) const;
   // Why the last attempt did not keep its iterate although it might have; empty: it did, or had none.
   const std::string& given_back() const { return given_back_; }
   // Farthest way of a node in the last increment [m].
@@ -68,6 +72,8 @@ class Stepper {
     std::vector<double> lambda;
   } found_;  // what refine_gradients() goes back to; empty with other methods
   std::vector<double> memory_before_;
+  // Increments of the step under way, on end, that each method did not solve; automatic: that of the world.
+  std::array<int, 8> failures_{};
   std::string given_back_;
   double moved_ = 0;
   std::function<void(const ProgressInfo&)> progress_;

@@ -246,6 +246,21 @@ TEST_CASE("a step within a budget keeps its best iterate and says what is left")
   CHECK(tip(meager, body) == Approx(tip(full, body)).epsilon(0.02));
 }
 
+TEST_CASE("control of the time error makes no increments shorter than the smallest") {
+  BodyId body;
+  WorldOptions options = test::dynamic_options();
+  options.time_error = 1e-12;
+  options.smallest_fraction = 1.0 / 32;
+  World world = dropped_beam(options, body);
+  for (int step = 0; step < 2; ++step) {
+    const StepReport r = world.advance(0.02);
+    INFO(r.reason);
+    REQUIRE(r.status == StepStatus::converged);
+    CHECK(r.substeps <= 64);
+    CHECK(r.time_error > 1e-12);
+  }
+}
+
 TEST_CASE("control of the time error takes as many increments as the tolerance asks") {
   BodyId body;
   const auto run = [&](const SchemePtr& scheme, double tolerance, StepReport& report) {

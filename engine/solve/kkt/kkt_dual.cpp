@@ -21,6 +21,8 @@ namespace {
 
 // 1 / (W D) of augmented rows without compliance: smaller takes fewer iterations and costs digits of A.
 constexpr double softness = 1e-2;
+// Of an iterative linear solver in all iterations for one direction.
+constexpr std::int64_t most_linear_iterations = 10000;
 // Curvature along a direction, in units of the preconditioner, that rounding alone may leave.
 constexpr double no_curvature = 1e-13;
 
@@ -128,7 +130,9 @@ bool Kkt::solve_dual(std::span<const double> row_rhs, StageSeconds& seconds) {
   const double start = rho;
   bool ok = std::isfinite(rho);
   int iteration = 0;
-  for (; ok && rho > dual_tolerance * dual_tolerance * start && iteration < dual_iteration_limit;
+  const std::int64_t most_linear = linear_iterations_ + most_linear_iterations;
+  for (; ok && rho > dual_tolerance * dual_tolerance * start && iteration < dual_iteration_limit &&
+         linear_iterations_ < most_linear;
        ++iteration) {
     ok = !interrupted() && apply_dual(cg_p_, cg_q_, seconds);
     const double curvature = dot_rows(cg_p_, cg_q_);

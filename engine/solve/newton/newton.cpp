@@ -525,7 +525,8 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
     position_gap(p, x);
     rest_gap(report);
     if (interrupted()) return fail(SaddleStatus::cancelled);
-    if (out_of_patience(options, iteration, report.factorizations))
+    if (out_of_patience(options, iteration, report.factorizations) ||
+        report.inner_work() >= options.most_inner_work())
       return fail(SaddleStatus::iteration_limit);
     // A state that is already in balance stays to the last bit.
     if ((iteration == 0 || s.has_lag()) && balanced(p, options, x, lambda, report)) return report;

@@ -176,6 +176,8 @@ SaddleReport UnsymmetricNewton::solve(const SaddleProblem& p, const SaddleOption
     if (part_->vanishes()) {
       if (!lagged_step(p, x, lambda, report)) return fail(report.status);
     } else if (holding || !coupled_step(p, options, x, lambda, report)) {
+      // The step that failed was one.
+      if (report.iterations >= options.max_iterations) return fail(SaddleStatus::iteration_limit);
       if (!holding) {
         holding = true;
         held = 0;

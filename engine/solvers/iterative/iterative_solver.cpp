@@ -10,6 +10,9 @@
 namespace isochor {
 namespace {
 
+// Relative residual that still makes a step: rounding may keep the last digits of an ill-conditioned system
+// out of reach.
+constexpr double kGoodEnough = 1e-6;
 constexpr Index wide_row_nodes = 400;       // a row over more is measured
 constexpr std::size_t most_wide_rows = 64;  // more of them are left at 1 + C
 
@@ -190,7 +193,22 @@ bool IterativeSolver::minimize(std::span<const double> b, std::span<double> x, d
   if (!(square >= 0)) return false;
   double gamma0 = 1, gamma1 = std::sqrt(square), eta = gamma1;
   double s0 = 0, s1 = 0, c0 = 1, c1 = 1;
+  // Looked at every so often: what has nearly stopped, good enough as a direction, or what could not get that
+  // far at many times its pace, ends early.
+  constexpr int window = 100, first_look = 200;
+  constexpr double pace = 4;
+  const double good_enough = kGoodEnough / options_.tolerance * target;
+  double before = eta;
+  const int start = iterations;
   for (; iterations < options_.max_iterations && gamma1 > 0 && std::abs(eta) > target; ++iterations) {
+    const int done = iterations - start;
+    if (done > 0 && done % window == 0) {
+      const double now = std::abs(eta), gain = std::log(before / now);
+      const double left = std::log(now / good_enough);
+      const double chances = pace * (options_.max_iterations - iterations) / window;
+      if (done >= first_look && (left <= 0 ? gain < std::log(2.0) : left > gain * chances)) break;
+      before = now;
+    }
     loop_(size, grain, [&](Index begin, Index end) {
       for (Index i = begin; i < end; ++i) z1_[at(i)] /= gamma1;
     });
@@ -271,8 +289,7 @@ SolveReport IterativeSolver::solve(std::span<const double> right_hand_side, std:
     for (std::size_t i = 0; i < b_.size(); ++i) residual_[i] = b_[i] - residual_[i];
     report.residual = max_norm(residual_) / (norm_ * x_norm + b_norm);
     for (std::size_t u = 0; u < n; ++u) solution[u] = x_[at(place[u])];
-    // Rounding may keep the last digits of an ill-conditioned system out of reach.
-    report.ok = now <= options_.tolerance * first || now <= 1e-6 * first;
+    report.ok = now <= options_.tolerance * first || now <= kGoodEnough * first;
   }
   return report;
 }
