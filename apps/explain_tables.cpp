@@ -38,7 +38,7 @@ void print_pools(const Explanation& e, const RunResult& r) {
 }
 
 void print_stages(const RunResult& r) {
-  const StageTimes& t = r.stages;
+  const StageSeconds& t = r.stages;
   Table table({"time", "seconds", "share"});
   table.numbers_from(1, 2);
   const double rest = t.total - t.analyze - t.evaluate - t.gather - t.factor - t.solve - t.line_search;

@@ -52,7 +52,7 @@ struct Outcome {
   double step = 0, iteration = 0;  // processor time [ms]
   int iterations = 0, corrections = 0, factorizations = 0;
   std::size_t active = 0;
-  StageTimes seconds;
+  StageSeconds seconds;
 };
 
 constexpr double kCell = 0.01;  // of the blocks on each other [m]

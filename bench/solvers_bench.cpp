@@ -266,8 +266,7 @@ int main(int argc, char** argv) {
     fronts("multifrontal, single precision", {.single_from = 0});
     fronts("multifrontal, double precision", {.single_precision = false});
     if (stiffness) {
-      good &=
-          run("cholmod, supernodal", make_linear_solver(SolverKind::cholmod_supernodal).get(), s, repeats);
+      good &= run("cholmod, supernodal", make_linear_solver(Solver::cholmod_supernodal).get(), s, repeats);
     }
     const auto mumps = [&](const char* label, const MumpsOptions& o) {
       good &= run(label, make_mumps_solver(o).get(), s, repeats);

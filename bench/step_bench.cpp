@@ -61,7 +61,7 @@ Built build(Mesh mesh, Element element, WorldOptions options, const char* clampe
 
 struct Totals {
   int steps = 0, iterations = 0, factorizations = 0, corrections = 0;
-  StageTimes s;
+  StageSeconds s;
   std::vector<double> step_seconds;
 
   void add(const StepReport& r) {

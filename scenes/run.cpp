@@ -25,16 +25,6 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void add(StageTimes& sum, const StageTimes& t) {
-  sum.analyze += t.analyze;
-  sum.evaluate += t.evaluate;
-  sum.gather += t.gather;
-  sum.factor += t.factor;
-  sum.solve += t.solve;
-  sum.line_search += t.line_search;
-  sum.total += t.total;
-}
-
 // One run from a built world to its last record.
 class Run {
  public:
@@ -163,7 +153,7 @@ void Run::record(int step, const StepReport& report) {
   result_.state_hash = world.state_hash();
   result_.size = world.size();  // the factor is known after the first step
   result_.wall_s = wall_before_ + seconds_since(start_);
-  add(result_.stages, report.seconds);
+  result_.stages += report.seconds;
 }
 
 // A step that ends early is no place to go on from: what was never stopped did not end there.
@@ -295,7 +285,7 @@ void Run::march(RunOutputs* outputs) {
       result_.newton_iterations += report.iterations;
       result_.factorizations += report.factorizations;
       result_.solves += report.iterations + report.corrections;
-      add(result_.stages, report.seconds);
+      result_.stages += report.seconds;
     }
     if (!over && last) {
       result_.status = RunStatus::converged;

@@ -90,7 +90,7 @@ struct RunResult {
   int newton_iterations = 0, factorizations = 0;
   int solves = 0;  // with the factors of an iteration: the iteration itself and corrections
   double wall_s = 0;
-  StageTimes stages;
+  StageSeconds stages;
   WorldSize size;
   Index elements = 0;
   int threads = 0;

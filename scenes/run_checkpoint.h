@@ -21,7 +21,7 @@ struct RunCheckpoint {
   std::vector<std::string> warnings;
   int newton_iterations = 0, factorizations = 0, solves = 0;
   double wall_s = 0;
-  StageTimes stages;
+  StageSeconds stages;
   std::uint64_t page_bytes = 0;  // of the frames kept for the page
 };
 

@@ -12,12 +12,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json stages_json(const StageTimes& t) {
+Json stages_json(const StageSeconds& t) {
   return {{"analyze", t.analyze}, {"evaluate", t.evaluate},       {"gather", t.gather}, {"factor", t.factor},
           {"solve", t.solve},     {"line_search", t.line_search}, {"total", t.total}};
 }
 
-StageTimes stages_of(const Json& j) {
+StageSeconds stages_of(const Json& j) {
   return {j.at("analyze"), j.at("evaluate"),    j.at("gather"), j.at("factor"),
           j.at("solve"),   j.at("line_search"), j.at("total")};
 }

@@ -59,7 +59,7 @@ struct Measured {
   int repeats = 0;
   double seconds = 0, seconds_median = 0;
   double cpu_seconds = 0;  // least, of all threads: what a busy machine does not stretch
-  StageTimes stages;       // of the fastest run
+  StageSeconds stages;     // of the fastest run
   std::string hash;        // of the last state
 
   bool good() const { return status == "converged"; }

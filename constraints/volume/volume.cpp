@@ -87,7 +87,7 @@ class VolumeEffect final : public EffectSource {
         continue;
       }
       // Rows over several regions have a pool of their own.
-      if (!def_.across_regions) builder.want_volume(def_.body, r, strain());
+      if (!def_.across_regions) builder.want_volume(def_.body, r, def_.strain);
       if (def_.carries_bulk && !builder.claim_bulk(def_.body, r)) {
         return Error{who() + "other volume rows already carry the bulk modulus of region \"" +
                      builder.body(def_.body).regions[r].name +
@@ -122,16 +122,13 @@ class VolumeEffect final : public EffectSource {
 
  private:
   std::string who() const { return "volume \"" + def_.name + "\": "; }
-  VolumeStrain strain() const {
-    return def_.strain == VolumeStrainKind::linear ? VolumeStrain::linear : VolumeStrain::logarithmic;
-  }
 
   std::vector<VolumeRegion> separate_regions(const Builder& builder, const BodyData& body,
                                              std::span<const std::size_t> regions) const {
     std::vector<VolumeRegion> list;
     for (const std::size_t r : regions) {
       const RegionData& region = body.regions[r];
-      const Index pool = region.volume_pool[static_cast<std::size_t>(strain())];
+      const Index pool = region.volume_pool[static_cast<std::size_t>(def_.strain)];
       // Rows of another effect may have asked for the pool; without a bulk modulus these carry nothing.
       if (pool < 0 || (std::isinf(region.material->inverse_bulk()) && !def_.hard)) continue;
       VolumeRegion v;
@@ -156,7 +153,7 @@ class VolumeEffect final : public EffectSource {
         const auto rows = nodal_volume_rows(region, equal_order ? def_.stabilization : 0, &nodes);
         if (def_.lumped_compliance) lump(*rows);
         const Index pool = add(builder, rows);
-        if (def_.strain == VolumeStrainKind::linear && def_.carries_bulk) {
+        if (def_.strain == VolumeStrain::linear && def_.carries_bulk) {
           instance.nodal.push_back({pool, std::move(nodes)});
         }
         break;

@@ -197,15 +197,13 @@ Result<VolumeRegion> region_across(Builder& builder, const VolumeDef& def,
       body.reference->points > 1 ? VolumeFunctions::corners : VolumeFunctions::constant;
   auto data = solid_data(*body.reference, builder.rest(), body.global_cells, cells, kind);
   if (!data) return Error{data.error()};
-  const auto strain =
-      def.strain == VolumeStrainKind::linear ? VolumeStrain::linear : VolumeStrain::logarithmic;
   const auto pool =
-      std::make_shared<SolidPool>(body.name + "/" + def.name, std::move(data).value(), nullptr, strain);
+      std::make_shared<SolidPool>(body.name + "/" + def.name, std::move(data).value(), nullptr, def.strain);
   out.name = def.name;
   out.stencil_pool = builder.add_stencils(pool);
   out.pool = &builder.solid(out.stencil_pool);
   out.corners = body.reference->corners;
-  SpanningVolume spanning{out.stencil_pool, strain, std::vector<Index>(at(body.mesh.cell_count()), -1)};
+  SpanningVolume spanning{out.stencil_pool, def.strain, std::vector<Index>(at(body.mesh.cell_count()), -1)};
   for (Index s = 0; s < out.pool->stencils(); ++s) {
     const Index c = out.pool->data().cell[at(s)];
     const MaterialModel& m = *material[at(c)];

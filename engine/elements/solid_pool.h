@@ -4,14 +4,9 @@
 
 #include "engine/elements/material.h"
 #include "engine/system/pool.h"
+#include "isochor/choices.h"
 
 namespace isochor {
-
-// The strain that a volume function measures.
-enum class VolumeStrain : std::uint8_t {
-  linear,       // J - 1
-  logarithmic,  // log J; its multiplier is J times the pressure
-};
 
 // Rest data of solid stencils. All stencils of a set have the same number of points.
 struct SolidData {

@@ -58,20 +58,6 @@ std::string_view to_string(SaddleStatus status) {
   return "unknown";
 }
 
-void SaddleReport::add_work(const SaddleReport& earlier) {
-  iterations += earlier.iterations;
-  factorizations += earlier.factorizations;
-  trials += earlier.trials;
-  corrections += earlier.corrections;
-  lagged += earlier.lagged;
-  projected += earlier.projected;
-  shifted += earlier.shifted;
-  dual_steps += earlier.dual_steps;
-  stood_in += earlier.stood_in;
-  dual_iterations += earlier.dual_iterations;
-  linear_iterations += earlier.linear_iterations;
-}
-
 SaddlePoint::SaddlePoint(std::shared_ptr<const System> system, const Parallel& parallel,
                          std::unique_ptr<LinearSolver> solver)
     : system_(std::move(system)), assembly_(system_, parallel), kkt_(system_, parallel, std::move(solver)) {

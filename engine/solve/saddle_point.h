@@ -59,17 +59,9 @@ enum class SaddleStatus : std::uint8_t {
 };
 std::string_view to_string(SaddleStatus status);
 
-struct SaddleReport {
+struct SaddleReport : SolveCounters {
   SaddleStatus status = SaddleStatus::converged;
-  int iterations = 0, factorizations = 0, trials = 0;
-  int corrections = 0;                 // further steps on factors at hand
-  int lagged = 0;                      // iterations of a coupled system that held the lag
-  int projected = 0, shifted = 0;      // iterations mended by projection and by a diagonal shift
-  int dual_steps = 0;                  // of dual ascent
-  int stood_in = 0;                    // solves that ended by another method than the one asked for
-  std::int64_t dual_iterations = 0;    // of conjugate gradients on multipliers
-  std::int64_t linear_iterations = 0;  // of an iterative linear solver, for directions
-  Index negative_pivots = -1;          // of the last factorisation; rows() when the inertia is right
+  Index negative_pivots = -1;  // of the last factorisation; rows() when the inertia is right
   double force_residual = 0, row_residual = 0, linear_residual = 0;
   double step = 0;  // largest displacement of the last step [m]
   std::string message;
@@ -79,7 +71,7 @@ struct SaddleReport {
   std::vector<std::string> null_rows;
 
   // Counts the work of an earlier solve of the same step in.
-  void add_work(const SaddleReport& earlier);
+  void add_work(const SaddleReport& earlier) { SolveCounters::operator+=(earlier); }
   // What iterations inside of steps took, in factorizations, roughly: the same on every machine.
   double inner_work() const {
     return 0.1 * dual_steps + 0.05 * static_cast<double>(dual_iterations) +

@@ -30,39 +30,39 @@ std::unique_ptr<LinearSolver> make_pivoting_solver() {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, const SolverWishes& wishes) {
+std::unique_ptr<LinearSolver> make_linear_solver(Solver kind, const SolverWishes& wishes) {
   if (blas_threads() == 0) set_blas_threads(default_blas_threads);
   switch (kind) {
-    case SolverKind::mumps:
+    case Solver::mumps:
       return make_mumps_solver();
-    case SolverKind::cholmod:
+    case Solver::cholmod:
       return make_cholmod_solver();
-    case SolverKind::eigen:
+    case Solver::eigen:
       return make_eigen_solver();
-    case SolverKind::iterative:
+    case Solver::iterative:
       return make_iterative_solver();
-    case SolverKind::cholmod_supernodal:
+    case Solver::cholmod_supernodal:
 #ifdef ISOCHOR_HAVE_CHOLMOD_SUPERNODAL
       return make_cholmod_supernodal_solver();
 #else
       return nullptr;
 #endif
-    case SolverKind::multifrontal:
-    case SolverKind::automatic:
+    case Solver::multifrontal:
+    case Solver::automatic:
       break;
   }
   auto direct =
       make_multifrontal_solver(make_pivoting_solver(), {.single_precision = wishes.single_precision});
-  if (kind == SolverKind::multifrontal) return direct;
+  if (kind == Solver::multifrontal) return direct;
   ChoiceOptions choice;
   choice.prefer_iterative = wishes.prefer_iterative;
   return std::make_unique<ChosenSolver>(std::move(direct), make_iterative_solver(), choice);
 }
 
-std::unique_ptr<LinearSolver> make_unsymmetric_solver(SolverKind kind) {
+std::unique_ptr<LinearSolver> make_unsymmetric_solver(Solver kind) {
   if (blas_threads() == 0) set_blas_threads(default_blas_threads);
   std::unique_ptr<LinearSolver> solver;
-  if (kind == SolverKind::automatic || kind == SolverKind::multifrontal || kind == SolverKind::mumps) {
+  if (kind == Solver::automatic || kind == Solver::multifrontal || kind == Solver::mumps) {
     MumpsOptions options;
     options.unsymmetric = true;
     solver = make_mumps_solver(options);

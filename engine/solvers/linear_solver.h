@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "isochor/choices.h"
 #include "isochor/threads.h"
 #include "isochor/types.h"
 
@@ -107,16 +108,6 @@ class LinearSolver {
   std::function<bool()> interrupt_;
 };
 
-enum class SolverKind : std::uint8_t {
-  automatic,
-  mumps,
-  cholmod,
-  eigen,
-  iterative,
-  multifrontal,
-  cholmod_supernodal
-};
-
 struct SolverWishes {
   bool prefer_iterative = false;  // of `automatic`: factors only where iterations have failed
   // Factors in single precision where refinement shows that they do. Off where matrices next to singular
@@ -126,11 +117,11 @@ struct SolverWishes {
 
 // The backend asked for, or one that chooses among those built in. Null when the backend is not
 // part of this build.
-std::unique_ptr<LinearSolver> make_linear_solver(SolverKind kind, const SolverWishes& wishes = {});
+std::unique_ptr<LinearSolver> make_linear_solver(Solver kind, const SolverWishes& wishes = {});
 
 // For matrices that are symmetric in their pattern alone: LU factors, without inertia. Never null; of a kind
 // that has no such factors the one that every build has.
-std::unique_ptr<LinearSolver> make_unsymmetric_solver(SolverKind kind);
+std::unique_ptr<LinearSolver> make_unsymmetric_solver(Solver kind);
 
 // The backends of this build with their licenses, for `isochor version`.
 struct SolverBackend {

@@ -96,7 +96,9 @@ bool Controller::give_back_unfinished(StepReport& report) {
 }
 
 void Controller::finish(const Clock& clock, StepReport& report) {
-  report.seconds = stage_times(context_.methods.chosen().seconds(), clock.before, clock.total());
+  report.seconds = context_.methods.chosen().seconds();
+  report.seconds -= clock.before;
+  report.seconds.total = clock.total();
   report.expected_negative_pivots = context_.system().rows();
   // What was rejected says how the state is that stays.
   if (report.status != StepStatus::converged && report.status != StepStatus::unfinished) {

@@ -17,10 +17,6 @@ bool climbs(Method method) {
   return method == Method::dual_ascent || method == Method::augmented_ascent;
 }
 
-SolverKind kind_of(const WorldOptions& options) {
-  return static_cast<SolverKind>(options.solver);
-}
-
 // How many rows are treated how, in words.
 std::string count_rows(const System& system) {
   const auto count = [](std::span<const Index> rows) { return std::to_string(rows.size()); };
@@ -73,7 +69,7 @@ Result<void> Methods::compile_system(SystemParts parts, bool ascent) {
     return Error{"world: method position_based has no answer for this scene: " + what +
                  "; use another method"};
   }
-  if (kind_of(options_) == SolverKind::cholmod_supernodal && !system_->kept_rows().empty()) {
+  if (options_.solver == Solver::cholmod_supernodal && !system_->kept_rows().empty()) {
     return Error{"world: solver cholmod_supernodal factors positive definite matrices, and " +
                  std::to_string(system_->kept_rows().size()) +
                  " rows are in the matrix; use method condensation with element rows and nu < 0.5, method "
@@ -111,8 +107,8 @@ Result<void> Methods::make(SystemParts parts, bool keep_solvers) {
   if (keep_solvers)
     solver = release_solver(unsymmetric);
   else
-    solver = make_linear_solver(kind_of(options_), wishes);
-  if (system_->couples() && !unsymmetric) unsymmetric = make_unsymmetric_solver(kind_of(options_));
+    solver = make_linear_solver(options_.solver, wishes);
+  if (system_->couples() && !unsymmetric) unsymmetric = make_unsymmetric_solver(options_.solver);
   if (!solver) return Error{"world: this build does not have the linear solver that is asked for"};
   make_chosen(std::move(solver), std::move(unsymmetric));
   counts_ = count_rows(*system_);
@@ -146,9 +142,9 @@ std::unique_ptr<SaddlePoint> Methods::make_stand_in(Method method) const {
   parts.border_wide_rows = true;
   auto compiled = System::compile(std::move(parts));
   if (!compiled) return nullptr;
-  if (kind_of(options_) == SolverKind::cholmod_supernodal && !compiled.value()->kept_rows().empty())
+  if (options_.solver == Solver::cholmod_supernodal && !compiled.value()->kept_rows().empty())
     return nullptr;
-  auto solver = make_linear_solver(kind_of(options_), SolverWishes{});
+  auto solver = make_linear_solver(options_.solver, SolverWishes{});
   if (!solver) return nullptr;
   auto other = std::make_unique<Newton>(std::move(compiled).value(), parallel_, std::move(solver));
   other->set_interrupt(interrupt_);

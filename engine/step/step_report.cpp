@@ -7,17 +7,7 @@
 namespace isochor {
 
 void add_solve(StepReport& total, const SaddleReport& r) {
-  total.iterations += r.iterations;
-  total.factorizations += r.factorizations;
-  total.trials += r.trials;
-  total.corrections += r.corrections;
-  total.lagged += r.lagged;
-  total.projected += r.projected;
-  total.shifted += r.shifted;
-  total.dual_steps += r.dual_steps;
-  total.stand_ins += r.stood_in;
-  total.dual_iterations += r.dual_iterations;
-  total.linear_iterations += r.linear_iterations;
+  total += r;
   total.negative_pivots = r.negative_pivots;
   total.force_residual = r.force_residual;
   total.row_residual = r.row_residual;
@@ -73,16 +63,6 @@ StepReport invalid_step(std::string reason, double time) {
   report.reason = std::move(reason);
   report.time = time;
   return report;
-}
-
-StageTimes stage_times(const StageSeconds& now, const StageSeconds& before, double total) {
-  return {now.analyze - before.analyze,
-          now.evaluate - before.evaluate,
-          now.gather - before.gather,
-          now.factor - before.factor,
-          now.solve - before.solve,
-          now.line_search - before.line_search,
-          total};
 }
 
 }  // namespace isochor

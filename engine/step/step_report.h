@@ -15,6 +15,4 @@ std::string failure_text(const SaddleReport& solve, double t, const std::vector<
 
 StepReport invalid_step(std::string reason, double time);
 
-StageTimes stage_times(const StageSeconds& now, const StageSeconds& before, double total);
-
 }  // namespace isochor

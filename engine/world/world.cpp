@@ -55,8 +55,7 @@ Result<World> World::create(WorldOptions options, std::uint64_t abi) {
   if (!std::isfinite(g.x) || !std::isfinite(g.y) || !std::isfinite(g.z)) {
     return Error{"world: gravity must be finite numbers"};
   }
-  const auto kind = static_cast<SolverKind>(options.solver);
-  if (options.solver != Solver::automatic && !make_linear_solver(kind)) {
+  if (options.solver != Solver::automatic && !make_linear_solver(options.solver)) {
     return Error{
         "world: the linear solver asked for is not part of this build; `isochor version` lists those that "
         "are"};

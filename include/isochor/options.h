@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "isochor/choices.h"
 #include "isochor/curves.h"
 #include "isochor/types.h"
 
@@ -14,18 +15,6 @@ namespace isochor {
 class TimeScheme;  // engine-side
 // Made by the functions of <isochor/schemes.h>.
 using SchemePtr = std::shared_ptr<const TimeScheme>;
-
-// Who solves the linear systems. All but `iterative` factor the matrix; that one iterates, with memory linear
-// in the mesh (docs/solver.md). What a build does not have is refused when the world is compiled.
-enum class Solver : std::uint8_t {
-  automatic,
-  mumps,
-  cholmod,
-  eigen,
-  iterative,
-  multifrontal,       // our own, in single precision where that is good enough
-  cholmod_supernodal  // positive definite matrices only: no rows in the matrix. GPL, off by default
-};
 
 // How the saddle point of a step is solved. All but `position_based` end at the same solution; docs/solver.md
 // compares their cost.

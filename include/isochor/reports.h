@@ -5,6 +5,7 @@
 #include <string>
 
 #include "isochor/types.h"
+#include "isochor/work.h"
 
 namespace isochor {
 
@@ -16,26 +17,12 @@ enum class StepStatus : std::uint8_t {
   unfinished,  // the budget ran out: the state is the best iterate, the residuals say how good
 };
 
-// Seconds by stage of the work done.
-struct StageTimes {
-  double analyze = 0, evaluate = 0, gather = 0, factor = 0, solve = 0, line_search = 0, total = 0;
-};
-
-struct StepReport {
+struct StepReport : SolveCounters {
   StepStatus status = StepStatus::converged;
   std::string reason;  // empty when converged; else one sentence
   double time = 0;     // of the state now
   int substeps = 0, rejected_substeps = 0;
-  int iterations = 0;   // Newton iterations, each with its own factorization
-  int corrections = 0;  // further steps on factors at hand
-  int lagged = 0;       // FrictionCoupling::coupled: iterations that fell back to lagged friction
-  int factorizations = 0, trials = 0;
-  int projected = 0, shifted = 0;  // iterations whose matrix had to be mended
-  int dual_steps = 0;              // of dual ascent
-  int stand_ins = 0;  // increments that a dual method left to Method::augmented_gradients or saddle_point
-  std::int64_t dual_iterations = 0;    // of conjugate gradients on multipliers
-  std::int64_t linear_iterations = 0;  // of Solver::iterative
-  int rescues = 0;                     // increments that only a damped motion brought to their equilibrium
+  int rescues = 0;           // increments that only a damped motion brought to their equilibrium
   int error_rejections = 0;  // increments that converged and were taken back for WorldOptions::time_error
   Index negative_pivots = -1, expected_negative_pivots = 0;
   // follow(): directions in which the equilibrium is unstable under fixed loads; -1: the backend cannot tell.
@@ -49,7 +36,7 @@ struct StepReport {
   // an equilibrium far from the last one, rows that a fixed number of sweeps leaves unmet. Empty: none.
   std::string warning;
   double force_residual = 0, row_residual = 0, linear_residual = 0;
-  StageTimes seconds;
+  StageSeconds seconds;
 };
 
 struct ProgressInfo {

@@ -183,7 +183,7 @@ void describe(Io& io, VolumeRows& v) {
   io.word("space", space, VolumeSpaceWord::node);
   v.none = space == VolumeSpaceWord::none;
   if (!v.none) v.def.space = static_cast<VolumeSpace>(space);
-  io.word("strain", v.def.strain, VolumeStrainKind::linear);
+  io.word("strain", v.def.strain, VolumeStrain::linear);
   io.names("regions", v.def.regions);
   io.integer("rings", v.def.rings, 1);
   io.list("zones", v.def.zones);

@@ -33,8 +33,7 @@ ISOCHOR_WORDS(MaterialLaw, 15, {MaterialLaw::neo_hookean, "neo_hookean"},
               {MaterialLaw::arruda_boyce, "arruda_boyce"}, {MaterialLaw::ogden, "ogden"});
 ISOCHOR_WORDS(BulkChoice, 2, {BulkChoice::consistent, "consistent"},
               {BulkChoice::bulk_modulus, "bulk_modulus"});
-ISOCHOR_WORDS(VolumeStrainKind, 2, {VolumeStrainKind::linear, "linear"},
-              {VolumeStrainKind::logarithmic, "logarithmic"});
+ISOCHOR_WORDS(VolumeStrain, 2, {VolumeStrain::linear, "linear"}, {VolumeStrain::logarithmic, "logarithmic"});
 ISOCHOR_WORDS(UnpaintedCells, 2, {UnpaintedCells::none, "none"}, {UnpaintedCells::nearest, "nearest"});
 ISOCHOR_WORDS(RowTreatment, 6, {RowTreatment::automatic, "automatic"}, {RowTreatment::saddle, "saddle"},
               {RowTreatment::condensed, "condensed"}, {RowTreatment::bordered, "bordered"},

@@ -17,7 +17,7 @@ Json list_of(const Vec3& v) {
   return Json::array({v.x, v.y, v.z});
 }
 
-Json stages(const StageTimes& t) {
+Json stages(const StageSeconds& t) {
   return {{"analyze", t.analyze}, {"evaluate", t.evaluate},       {"gather", t.gather}, {"factor", t.factor},
           {"solve", t.solve},     {"line_search", t.line_search}, {"total", t.total}};
 }

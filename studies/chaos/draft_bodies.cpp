@@ -340,7 +340,7 @@ void draft_volumes(ChaosDraft& draft) {
     def.name = "volume" + std::to_string(b);
     def.body = static_cast<BodyId>(b);
     if (random.chance(0.6)) draw_space(random, draft.bodies[b], def);
-    if (random.chance(0.25)) def.strain = VolumeStrainKind::logarithmic;
+    if (random.chance(0.25)) def.strain = VolumeStrain::logarithmic;
     if (random.chance(0.15)) def.stabilization = random.pick({0.0, 0.1, 10.0});
     if (random.chance(0.1)) def.hard = true;
     if (random.chance(0.1)) def.treatment = static_cast<RowTreatment>(random.whole(0, 5));

@@ -57,7 +57,7 @@ void add_body_parts(const SceneDef& s, std::set<std::string>& parts) {
   }
   for (const VolumeRows& v : *s.volumes) {
     parts.insert("volume rows, " + (v.none ? "none" : word(kSpaces, v.def.space)));
-    if (!v.none && v.def.strain == VolumeStrainKind::logarithmic) parts.insert("volume rows, log J");
+    if (!v.none && v.def.strain == VolumeStrain::logarithmic) parts.insert("volume rows, log J");
   }
 }
 

@@ -68,7 +68,7 @@ std::vector<BodyPromise> promises(const SceneDef& scene, const BuiltScene& built
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const SceneBody& body = scene.bodies[b];
     const VolumeRows* rows = rows_of(scene, b);
-    const bool log_rows = rows != nullptr && rows->def.strain == VolumeStrainKind::logarithmic &&
+    const bool log_rows = rows != nullptr && rows->def.strain == VolumeStrain::logarithmic &&
                           rows->def.space != VolumeSpace::zone;
     BodyPromise promise;
     promise.body = built.bodies[b];
@@ -268,7 +268,7 @@ void SceneJudge::watch_volume(std::size_t b) {
     exact = whole && (rows->def.hard || (rows->def.carries_bulk && incompressible));
   }
   exact_volume_.push_back(exact);
-  log_volume_.push_back(rows != nullptr && rows->def.strain == VolumeStrainKind::logarithmic);
+  log_volume_.push_back(rows != nullptr && rows->def.strain == VolumeStrain::logarithmic);
 }
 
 void SceneJudge::watch_energy(const BuiltScene& built, std::size_t b) {

@@ -130,7 +130,7 @@ std::vector<Cell> cells(bool quick) {
   return out;
 }
 
-double solving(const StageTimes& t) {
+double solving(const StageSeconds& t) {
   return t.evaluate + t.gather + t.factor + t.solve + t.line_search;
 }
 
@@ -171,7 +171,7 @@ std::vector<Section> present(std::span<const Measured> all) {
       t.rows.back().resize(t.head.size());
       continue;
     }
-    const StageTimes& st = m.stages;
+    const StageSeconds& st = m.stages;
     const double each = per_iteration(m) / std::max(solving(st), 1e-300);
     time.bars.push_back({m.label("effect"),
                          {{"evaluation", each * st.evaluate},

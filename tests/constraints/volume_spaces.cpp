@@ -104,7 +104,7 @@ TEST_CASE("rings and zones with the logarithmic strain are as stiff in bulk as a
   constants.poisson = nu;
   const MaterialPtr isochoric = value(isochoric_neo_hookean(constants));
   for (VolumeDef def : {rows(VolumeSpace::ring, 1), rows(VolumeSpace::ring, 2), overlapping(1)}) {
-    def.strain = VolumeStrainKind::logarithmic;
+    def.strain = VolumeStrain::logarithmic;
     World world = test::make_world(small_system());
     const BodyId body = test::add_body(world, test::box({3, 2, 2}), Element::tet4, isochoric);
     test::move_linearly(world, body, {"x0", "x1", "y0", "y1", "z0", "z1"}, {},
@@ -125,7 +125,7 @@ TEST_CASE("a hard zone with the logarithmic strain keeps the mean of log J") {
   VolumeDef zone = overlapping(0);
   zone.name = "zone";
   zone.zones.resize(1);
-  zone.strain = VolumeStrainKind::logarithmic;
+  zone.strain = VolumeStrain::logarithmic;
   zone.carries_bulk = false;
   value(world.add(volume(zone)));
   TractionDef pull;

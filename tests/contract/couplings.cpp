@@ -137,7 +137,7 @@ TEST_CASE("the solution of an unsymmetric system solves it") {
   int solved = 0;
   for_every_coupling([&](Coupled& c) {
     const System& s = c.system;
-    for (const auto kind : {SolverKind::automatic, SolverKind::eigen}) {
+    for (const auto kind : {Solver::automatic, Solver::eigen}) {
       c.evaluate(Want::hessian, c.scene.x(), c.lambda);
       c.part.evaluate(c.assembly, c.scene.x());
       Kkt kkt(c.scene.shared_system(), c.parallel, make_linear_solver(kind));

@@ -14,7 +14,7 @@ using isochor::CellType;
 using isochor::Curve;
 using isochor::Element;
 using isochor::VolumeSpace;
-using isochor::VolumeStrainKind;
+using isochor::VolumeStrain;
 
 isochor::MaterialPtr material(double poisson) {
   isochor::ElasticConstants c;
@@ -23,7 +23,7 @@ isochor::MaterialPtr material(double poisson) {
   return std::move(isochor::neo_hookean(c)).value();
 }
 
-isochor::EffectPtr volume_rows(VolumeSpace space, VolumeStrainKind strain, double stabilization = 1) {
+isochor::EffectPtr volume_rows(VolumeSpace space, VolumeStrain strain, double stabilization = 1) {
   isochor::VolumeDef def;
   def.body = BodyId{0};
   def.space = space;
@@ -86,7 +86,7 @@ void add_volumes(std::vector<SceneCase>& out) {
     SceneCase one_field{name + ", one field",        {}, solid_mesh(element), element,
                         {{"", material(0.3), 1000}}, {}};
     out.push_back(one_field);
-    for (const auto strain : {VolumeStrainKind::linear, VolumeStrainKind::logarithmic}) {
+    for (const auto strain : {VolumeStrain::linear, VolumeStrain::logarithmic}) {
       for (const auto space : {VolumeSpace::node, VolumeSpace::element, VolumeSpace::body}) {
         SceneCase c = one_field;
         c.name = name + ", volume rows, space " + std::to_string(static_cast<int>(space)) + ", strain " +
@@ -96,7 +96,7 @@ void add_volumes(std::vector<SceneCase>& out) {
         out.push_back(c);
       }
     }
-    for (const auto strain : {VolumeStrainKind::linear, VolumeStrainKind::logarithmic}) {
+    for (const auto strain : {VolumeStrain::linear, VolumeStrain::logarithmic}) {
       for (const bool hard : {false, true}) {
         isochor::VolumeZone low{"low", {}, {0, 1, 2}, {}, {}, hard ? 0.0 : 1.0};
         isochor::VolumeZone all{"all", {}, {}, {{Vec3{-9, -9, -9}, Vec3{9, 9, 9}}}, {}, 2};
@@ -119,7 +119,7 @@ void add_volumes(std::vector<SceneCase>& out) {
     regions.name = name + ", two regions at nu = 0.5";
     regions.mesh = divided(solid_mesh(element), 0.5);
     regions.materials = {{"low", material(0.5), 1000}, {"", material(0.499), 500}};
-    regions.effects = {volume_rows(VolumeSpace::node, VolumeStrainKind::linear)};
+    regions.effects = {volume_rows(VolumeSpace::node, VolumeStrain::linear)};
     regions.covers = covers;
     out.push_back(regions);
   }
@@ -130,7 +130,7 @@ void add_volumes(std::vector<SceneCase>& out) {
                       solid_mesh(Element::tet4_edge_smoothed),
                       Element::tet4_edge_smoothed,
                       {{"", material(0.5), 1000}},
-                      {volume_rows(VolumeSpace::node, VolumeStrainKind::linear)}};
+                      {volume_rows(VolumeSpace::node, VolumeStrain::linear)}};
     guarded.stretch = stretch;
     out.push_back(guarded);
   }
@@ -194,7 +194,7 @@ void add_pressures(std::vector<SceneCase>& out) {
 void add_supports_and_loads(std::vector<SceneCase>& out) {
   SceneCase c{
       "supports",    {"constraints/dirichlet"},   solid_mesh(Element::tet4),
-      Element::tet4, {{"", material(0.5), 1000}}, {volume_rows(VolumeSpace::node, VolumeStrainKind::linear)}};
+      Element::tet4, {{"", material(0.5), 1000}}, {volume_rows(VolumeSpace::node, VolumeStrain::linear)}};
   isochor::DirichletDef clamp;
   clamp.where.surfaces = {"x0"};
   isochor::DirichletDef slide;
@@ -295,7 +295,7 @@ void add_fields(std::vector<SceneCase>& out) {
                 mesh,
                 element,
                 {{"", isochor::with_fibers(matrix, {along, mixed}).value(), 1000}},
-                {volume_rows(VolumeSpace::node, VolumeStrainKind::linear)}};
+                {volume_rows(VolumeSpace::node, VolumeStrain::linear)}};
     c.numbered_cells = true;
     out.push_back(c);
     // Poisson's ratio up to 0.5 itself, a sixth of the cells, and the factor on top.

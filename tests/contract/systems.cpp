@@ -127,7 +127,7 @@ TEST_CASE("the solution of a linear system solves it whatever the treatment of i
     Assembled a(scene);
     a.evaluate(Want::hessian, scene.x());
     const TbbParallel serial{1};
-    Kkt kkt(scene.shared_system(), serial, make_linear_solver(SolverKind::automatic));
+    Kkt kkt(scene.shared_system(), serial, make_linear_solver(Solver::automatic));
     const double mass_scale = 1e6;  // far from any singular matrix
     const std::vector<double> stiffness(at(s.nodes()), 1.0);
     Kkt::Values values;

@@ -134,7 +134,7 @@ SmallProblem::SmallProblem(Element element, double traction, std::unique_ptr<Lin
     scene.system = value(System::compile(std::move(parts)));
   }
   parallel = std::make_unique<TbbParallel>(1);
-  if (!solver) solver = make_linear_solver(SolverKind::automatic);
+  if (!solver) solver = make_linear_solver(Solver::automatic);
   newton = std::make_unique<Newton>(scene.system, *parallel, std::move(solver));
   data = std::make_unique<ProblemData>(*scene.system);
   x = scene.system->parts().rest;

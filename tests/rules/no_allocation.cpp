@@ -75,7 +75,7 @@ TEST_CASE("a step of the world allocates no more than its linear solver") {
   pull.traction = {0, 900, 0};
   pull.amount = Curve::ramp(1);
   value(world.add(traction(pull)));
-  SmallProblem p(Element::tet4, 900, make_linear_solver(SolverKind::eigen));
+  SmallProblem p(Element::tet4, 900, make_linear_solver(Solver::eigen));
   REQUIRE(world.step(0.25).status == StepStatus::converged);
   REQUIRE(p.solve(0.25).status == SaddleStatus::converged);
   const AllocationCount of_world;

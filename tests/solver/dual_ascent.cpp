@@ -40,7 +40,7 @@ Climb inflate(bool moderate, DualAscentOptions ascent, int load_steps = 10, doub
   double volume = 0;
   for (const double v : s.row_measure()) volume += v;
   TbbParallel parallel(1);
-  DualAscent method(c.system, parallel, make_linear_solver(SolverKind::automatic), ascent);
+  DualAscent method(c.system, parallel, make_linear_solver(Solver::automatic), ascent);
   std::vector<Vec3> x = s.parts().rest;
   std::vector<double> lambda(at(s.rows()), 0.0), phi(at(s.rows()));
   ProblemData data(s);

@@ -13,14 +13,14 @@ using test::Matrix;
 using test::Saddle;
 
 struct Backend {
-  SolverKind kind;
+  Solver kind;
   const char* name;
 };
-constexpr Backend kBackends[] = {{SolverKind::mumps, "mumps"},
-                                 {SolverKind::cholmod, "cholmod"},
-                                 {SolverKind::eigen, "eigen"},
-                                 {SolverKind::multifrontal, "multifrontal"},
-                                 {SolverKind::automatic, "automatic"}};
+constexpr Backend kBackends[] = {{Solver::mumps, "mumps"},
+                                 {Solver::cholmod, "cholmod"},
+                                 {Solver::eigen, "eigen"},
+                                 {Solver::multifrontal, "multifrontal"},
+                                 {Solver::automatic, "automatic"}};
 
 template <class Body>
 void for_each_backend(Body body) {
@@ -63,7 +63,7 @@ TEST_CASE("backends solve saddle-point systems with hard and compliant rows") {
   for (const double compliance : {0.0, 1e-8, 0.3}) {
     INFO("compliance " << compliance);
     const Matrix m = test::saddle({60, 20, false, compliance, 0});
-    for_each_backend([&](LinearSolver& solver, SolverKind) { check_solution(solver, m); });
+    for_each_backend([&](LinearSolver& solver, Solver) { check_solution(solver, m); });
   }
 }
 
@@ -71,18 +71,18 @@ TEST_CASE("backends tell the inertia of an indefinite stiffness block") {
   for (int negative = 0; negative < 4; ++negative) {
     const Matrix m = test::saddle({60, 20, false, 0.1, negative});
     INFO(negative << " nodes turned negative");
-    for_each_backend([&](LinearSolver& solver, SolverKind) { check_solution(solver, m); });
+    for_each_backend([&](LinearSolver& solver, Solver) { check_solution(solver, m); });
   }
 }
 
 TEST_CASE("backends take a row over everything") {
   const Matrix m = test::saddle({400, 100, true, 0, 0});
-  for_each_backend([&](LinearSolver& solver, SolverKind) { check_solution(solver, m); });
+  for_each_backend([&](LinearSolver& solver, Solver) { check_solution(solver, m); });
 }
 
 TEST_CASE("backends factor again and again on one analysis") {
   const Matrix m = test::saddle({60, 20, true, 1e-3, 0});
-  for_each_backend([&](LinearSolver& solver, SolverKind) {
+  for_each_backend([&](LinearSolver& solver, Solver) {
     REQUIRE(solver.analyze(m.pattern).status == FactorStatus::ok);
     std::vector<double> values = m.values;
     const std::vector<double> b = test::random_vector(m.pattern.size);
@@ -112,7 +112,7 @@ TEST_CASE("backends say that a matrix is singular") {
   const Matrix zero_row = test::sparse(z);
   Matrix zero = m;
   std::fill(zero.values.begin(), zero.values.end(), 0.0);
-  for_each_backend([&](LinearSolver& solver, SolverKind) {
+  for_each_backend([&](LinearSolver& solver, Solver) {
     for (const Matrix* s : {static_cast<const Matrix*>(&m), &zero_row, static_cast<const Matrix*>(&zero)}) {
       REQUIRE(solver.analyze(s->pattern).status == FactorStatus::ok);
       const FactorReport f = solver.factor(s->values);
@@ -130,7 +130,7 @@ TEST_CASE("backends say that a matrix is singular") {
 
 TEST_CASE("backends refuse what is not finite and what does not fit") {
   const Matrix m = test::saddle({20, 5, false, 0.1, 0});
-  for_each_backend([&](LinearSolver& solver, SolverKind) {
+  for_each_backend([&](LinearSolver& solver, Solver) {
     CHECK(solver.factor(m.values).status == FactorStatus::failed);  // not analyzed yet
     REQUIRE(solver.analyze(m.pattern).status == FactorStatus::ok);
     for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
@@ -163,7 +163,7 @@ TEST_CASE("backends refuse what is not finite and what does not fit") {
 }
 
 TEST_CASE("backends take matrices of size nothing and one") {
-  for_each_backend([&](LinearSolver& solver, SolverKind) {
+  for_each_backend([&](LinearSolver& solver, Solver) {
     SymmetricPattern empty;
     empty.column_start = {0};
     REQUIRE(solver.analyze(empty).status == FactorStatus::ok);
@@ -191,7 +191,7 @@ TEST_CASE("badly scaled rows are refined to full accuracy") {
     a.col(i) *= s;
   }
   const Matrix m = test::sparse(a);
-  for_each_backend([&](LinearSolver& solver, SolverKind) {
+  for_each_backend([&](LinearSolver& solver, Solver) {
     REQUIRE(solver.analyze(m.pattern).status == FactorStatus::ok);
     if (solver.factor(m.values).status != FactorStatus::ok) return;  // refusing is honest
     std::vector<double> b = test::random_vector(m.pattern.size), x(b.size());
@@ -202,7 +202,7 @@ TEST_CASE("badly scaled rows are refined to full accuracy") {
 
 TEST_CASE("solvers work side by side in several threads, bit for bit") {
   const Matrix m = test::saddle({200, 60, true, 1e-3, 0});
-  for_each_backend([&](LinearSolver& solver, SolverKind kind) {
+  for_each_backend([&](LinearSolver& solver, Solver kind) {
     const std::vector<double> b = test::random_vector(m.pattern.size);
     std::vector<double> expected(b.size());
     REQUIRE(solver.analyze(m.pattern).status == FactorStatus::ok);
@@ -227,13 +227,13 @@ TEST_CASE("solvers work side by side in several threads, bit for bit") {
 }
 
 TEST_CASE("the process has a fixed number of BLAS threads, whatever the machine") {
-  make_linear_solver(SolverKind::automatic);
+  make_linear_solver(Solver::automatic);
   const int before = blas_threads();
   if (before == 0) return;  // a BLAS that cannot be told
   CHECK_FALSE(set_blas_threads(0));
   CHECK(set_blas_threads(1));
   CHECK(blas_threads() == 1);
-  make_linear_solver(SolverKind::automatic);
+  make_linear_solver(Solver::automatic);
   CHECK(blas_threads() == 1);  // a choice made is kept
   CHECK(set_blas_threads(before));
 }

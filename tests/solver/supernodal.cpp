@@ -10,7 +10,7 @@ using namespace isochor;
 using test::Matrix;
 
 bool built_in() {
-  return make_linear_solver(SolverKind::cholmod_supernodal) != nullptr;
+  return make_linear_solver(Solver::cholmod_supernodal) != nullptr;
 }
 
 Matrix stiffness(int negative_nodes) {
@@ -65,7 +65,7 @@ double distance(const Outcome& a, const Outcome& b) {
 
 TEST_CASE("supernodal factors solve definite systems again and again") {
   if (!built_in()) return;
-  const auto solver = make_linear_solver(SolverKind::cholmod_supernodal);
+  const auto solver = make_linear_solver(Solver::cholmod_supernodal);
   const Matrix m = stiffness(0), indefinite = stiffness(2);
   REQUIRE(solver->analyze(m.pattern).status == FactorStatus::ok);
   const std::vector<double> b = test::random_vector(m.pattern.size);
@@ -91,7 +91,7 @@ TEST_CASE("supernodal factors solve definite systems again and again") {
 
 TEST_CASE("supernodal factors refuse rows in the matrix and what is not finite") {
   if (!built_in()) return;
-  const auto solver = make_linear_solver(SolverKind::cholmod_supernodal);
+  const auto solver = make_linear_solver(Solver::cholmod_supernodal);
   const Matrix saddle = test::saddle({20, 5, false, 0.1, 0});
   const FactorReport f = solver->analyze(saddle.pattern);
   CHECK(f.status == FactorStatus::failed);

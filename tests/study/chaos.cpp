@@ -197,7 +197,7 @@ TEST_CASE("the judge finds inverted cells, whether or not the law has a value th
 TEST_CASE("volume rows of log J that carry no pressure promise nothing") {
   // At nu = 0 the law has kappa = 0, its rows are none, and it lives through inversion.
   SceneDef scene = block(Element::hex8, MaterialLaw::stvk, 0);
-  scene.volumes.emplace().emplace_back().def.strain = VolumeStrainKind::logarithmic;
+  scene.volumes.emplace().emplace_back().def.strain = VolumeStrain::logarithmic;
   CHECK(kind_of(scene, pushed_through, {"8 cells are inverted"}).empty());
   for (const double poisson : {0.0, 0.3}) {
     scene.bodies[0].materials[0].constants.poisson = poisson;

@@ -44,10 +44,10 @@ inline Compiled rubber_under_ball(double compliance, double friction, isochor::F
 inline std::unique_ptr<isochor::SaddlePoint> newton_of(const Compiled& scene,
                                                        const isochor::Parallel& parallel) {
   using namespace isochor;
-  auto solver = make_linear_solver(SolverKind::automatic);
+  auto solver = make_linear_solver(Solver::automatic);
   if (!scene.system->couples()) return std::make_unique<Newton>(scene.system, parallel, std::move(solver));
   return std::make_unique<UnsymmetricNewton>(scene.system, parallel, std::move(solver),
-                                             make_unsymmetric_solver(SolverKind::automatic));
+                                             make_unsymmetric_solver(Solver::automatic));
 }
 
 }  // namespace test

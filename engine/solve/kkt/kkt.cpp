@@ -20,26 +20,6 @@ Stopwatch::~Stopwatch() {
   total_ += now() - start_;
 }
 
-StageSeconds& StageSeconds::operator+=(const StageSeconds& o) {
-  analyze += o.analyze;
-  evaluate += o.evaluate;
-  gather += o.gather;
-  factor += o.factor;
-  solve += o.solve;
-  line_search += o.line_search;
-  return *this;
-}
-
-StageSeconds& StageSeconds::operator-=(const StageSeconds& o) {
-  analyze -= o.analyze;
-  evaluate -= o.evaluate;
-  gather -= o.gather;
-  factor -= o.factor;
-  solve -= o.solve;
-  line_search -= o.line_search;
-  return *this;
-}
-
 Kkt::Kkt(std::shared_ptr<const System> system, const Parallel& parallel, std::unique_ptr<LinearSolver> solver)
     : system_(std::move(system)), parallel_(parallel), solver_(std::move(solver)), factored_(solver_.get()) {
   const System& s = *system_;

@@ -8,15 +8,9 @@
 
 #include "engine/math/gmres.h"
 #include "engine/solve/kkt/unsymmetric_part.h"
+#include "isochor/work.h"
 
 namespace isochor {
-
-// Seconds by stage.
-struct StageSeconds {
-  double analyze = 0, evaluate = 0, gather = 0, factor = 0, solve = 0, line_search = 0;
-  StageSeconds& operator+=(const StageSeconds& o);
-  StageSeconds& operator-=(const StageSeconds& o);
-};
 
 class Stopwatch {
  public:

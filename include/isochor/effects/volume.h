@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "isochor/choices.h"
 #include "isochor/effects/effect.h"
 #include "isochor/ids.h"
 #include "isochor/painted.h"
@@ -13,7 +14,6 @@
 namespace isochor {
 
 enum class VolumeSpace : std::uint8_t { node, element, body, ring, zone };
-enum class VolumeStrainKind : std::uint8_t { linear, logarithmic };  // J - 1, log J
 
 // A set of cells with one row; zones may overlap. What fits any of the criteria is in it.
 struct VolumeZone {
@@ -32,7 +32,7 @@ struct VolumeDef {
   std::string name = "volume";
   BodyId body{};
   VolumeSpace space = VolumeSpace::node;
-  VolumeStrainKind strain = VolumeStrainKind::linear;
+  VolumeStrain strain = VolumeStrain::linear;
   // Regions it covers; empty: all. Rows are split at interfaces between regions, where the pressure jumps.
   std::vector<std::string> regions;
   // Space ring: one row over the cells within so many rings around each node, 1 those that touch it.

@@ -1,0 +1,57 @@
+// What solving took: counters and seconds, the same from the solver to the report of a step and of a run.
+#pragma once
+
+#include <cstdint>
+
+namespace isochor {
+
+struct SolveCounters {
+  int iterations = 0;              // Newton iterations, each with its own factorization
+  int corrections = 0;             // further steps on factors at hand
+  int lagged = 0;                  // FrictionCoupling::coupled: iterations that fell back to lagged friction
+  int factorizations = 0;          // mending an inertia takes more than one an iteration
+  int trials = 0;                  // evaluations of line searches
+  int projected = 0, shifted = 0;  // iterations whose matrix had to be mended: by projection, by a shift
+  int dual_steps = 0;              // of dual ascent
+  int stand_ins = 0;  // increments that a dual method left to Method::augmented_gradients or saddle_point
+  std::int64_t dual_iterations = 0;    // of conjugate gradients on multipliers
+  std::int64_t linear_iterations = 0;  // of Solver::iterative, for directions
+
+  SolveCounters& operator+=(const SolveCounters& o) {
+    iterations += o.iterations;
+    corrections += o.corrections;
+    lagged += o.lagged;
+    factorizations += o.factorizations;
+    trials += o.trials;
+    projected += o.projected;
+    shifted += o.shifted;
+    dual_steps += o.dual_steps;
+    stand_ins += o.stand_ins;
+    dual_iterations += o.dual_iterations;
+    linear_iterations += o.linear_iterations;
+    return *this;
+  }
+};
+
+// Seconds by stage of the work done.
+struct StageSeconds {
+  double analyze = 0, evaluate = 0, gather = 0, factor = 0, solve = 0, line_search = 0;
+  double total = 0;  // of whole steps, with what is between the stages
+
+  StageSeconds& operator+=(const StageSeconds& o) { return add(1, o); }
+  StageSeconds& operator-=(const StageSeconds& o) { return add(-1, o); }
+
+ private:
+  StageSeconds& add(double sign, const StageSeconds& o) {
+    analyze += sign * o.analyze;
+    evaluate += sign * o.evaluate;
+    gather += sign * o.gather;
+    factor += sign * o.factor;
+    solve += sign * o.solve;
+    line_search += sign * o.line_search;
+    total += sign * o.total;
+    return *this;
+  }
+};
+
+}  // namespace isochor
