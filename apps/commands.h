@@ -67,6 +67,9 @@ int study(const StudyArguments& arguments);
 int chaos(const StudyArguments& arguments, const std::function<bool()>& stop);
 int show(const std::string& scene, const std::vector<std::string>& overrides);
 int list(bool json);
+// Every key of a scene file: for a terminal, as JSON Schema, or as the tables of docs/scenes.md.
+enum class KeysAs { lines, schema, tables };
+int keys(KeysAs as);
 int check(const std::vector<std::string>& meshes, double scale, bool json);
 int version(bool json);
 

@@ -63,7 +63,8 @@ void add_study(CLI::App& top, app::StudyArguments& a) {
       ->check(CLI::PositiveNumber);
   c->add_option("--jobs", a.jobs, "chaos: seeds at a time")->check(CLI::Range(1, 256));
   c->add_flag("--keep", a.keep, "chaos: keep the scenes of all seeds, not only of broken ones");
-  c->add_flag("--untimed", a.untimed, "chaos: budgets count iterations in place of seconds, the same on every machine");
+  c->add_flag("--untimed", a.untimed,
+              "chaos: budgets count iterations in place of seconds, the same on every machine");
   c->add_flag("--quiet", a.quiet, "Print errors only");
   c->footer("A study that is stopped (Ctrl-C) leaves what it has; the same command goes on from there.");
 }
@@ -103,6 +104,11 @@ int dispatch(int argc, char** argv) {
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
+  bool schema = false, tables = false;
+  CLI::App* keys =
+      top.add_subcommand("keys", "Print every key of a scene file with kind, unit, default and meaning");
+  CLI::Option* as_schema = keys->add_flag("--schema", schema, "As JSON Schema");
+  keys->add_flag("--tables", tables, "As tables of Markdown")->excludes(as_schema);
   CLI::App* version = top.add_subcommand("version", "Print version, build and licenses");
   version->add_flag("--json", json, "As JSON");
   try {
@@ -114,6 +120,9 @@ int dispatch(int argc, char** argv) {
   if (list->parsed()) return app::list(json);
   if (check->parsed()) return app::check(meshes, scale, json);
   if (show->parsed()) return app::show(scene, overrides);
+  if (keys->parsed()) {
+    return app::keys(schema ? app::KeysAs::schema : tables ? app::KeysAs::tables : app::KeysAs::lines);
+  }
   if (version->parsed()) return app::version(json);
   if (top.got_subcommand("study")) return app::study(study);
   if (top.got_subcommand("view")) return app::view(view);

@@ -1,4 +1,4 @@
-// list, check and version.
+// list, check, keys and version.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -8,6 +8,7 @@
 #include "isochor/mesh_io.h"
 #include "scenes/library.h"
 #include "scenes/run.h"
+#include "scenes/scene_file.h"
 
 namespace isochor::app {
 
@@ -131,6 +132,14 @@ int list(bool json) {
   else
     std::printf("%s\nRun one with `isochor run NAME`; `isochor show NAME` prints it as a scene file.\n",
                 table.text().c_str());
+  return success;
+}
+
+int keys(KeysAs as) {
+  const std::string text = as == KeysAs::schema   ? scene_schema()
+                           : as == KeysAs::tables ? scene_key_tables()
+                                                  : scene_key_lines();
+  std::fputs(text.c_str(), stdout);
   return success;
 }
 

@@ -43,12 +43,12 @@ class Progress {
                 "vol change", "min J", "elapsed", "ETA");
   }
   void line(const StepRecord& r, int steps) {
-    if (r.rejected > 0 || r.stand_ins > 0) note_trouble(r);
+    if (r.rejected > 0 || r.work.stand_ins > 0) note_trouble(r);
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const double eta = r.step > 0 ? elapsed / r.step * (steps - r.step) : 0;
     const std::string step = std::to_string(r.step) + "/" + std::to_string(steps);
-    std::printf("%6s %10.4g %5d %9.1e %9.1e %8.3f %% %8.4f %8s %7s\n", step.c_str(), r.time, r.iterations,
-                r.force_residual, r.row_residual, 100 * r.total.volume_change(), r.min_J,
+    std::printf("%6s %10.4g %5d %9.1e %9.1e %8.3f %% %8.4f %8s %7s\n", step.c_str(), r.time,
+                r.work.iterations, r.force_residual, r.row_residual, 100 * r.total.volume_change(), r.min_J,
                 duration(elapsed).c_str(), duration(eta).c_str());
     std::fflush(stdout);
   }
@@ -56,7 +56,7 @@ class Progress {
  private:
   static void note_trouble(const StepRecord& r) {
     std::printf("       (%d increments, %d tried again shorter", r.substeps, r.rejected);
-    if (r.stand_ins > 0) std::printf(", %d left to another method", r.stand_ins);
+    if (r.work.stand_ins > 0) std::printf(", %d left to another method", r.work.stand_ins);
     std::printf(")\n");
   }
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -115,7 +115,7 @@ void print_summary(const RunResult& r, const std::string& folder) {
   print_metrics(r);
   print_state(r);
   std::printf("\n%s: %s, %d Newton iterations, %d factorizations, %.2f s\n", r.scene.c_str(),
-              to_string(r.status), r.newton_iterations, r.factorizations, r.wall_s);
+              to_string(r.status), r.work.iterations, r.work.factorizations, r.wall_s);
   std::printf("outputs in %s/: index.html, %s.pvd, steps.csv, summary.json\n", folder.c_str(),
               r.scene.c_str());
 }

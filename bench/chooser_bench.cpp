@@ -53,8 +53,8 @@ double processor_seconds() {
 Run run(SceneDef def, const Choice& choice, int steps) {
   Run out;
   AnalysisDef& a = def.analysis;
-  a.method = choice.method;
-  a.solver = choice.solver;
+  a.options.method = choice.method;
+  a.options.solver = choice.solver;
   const double h = a.step ? *a.step : a.duration / a.steps;
   const double start = processor_seconds();
   Result<BuiltScene> built = build(def, {.threads = 1});

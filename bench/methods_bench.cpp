@@ -86,8 +86,8 @@ void block(const Way& way, bool quick, bool one_field, double poisson) {
 void robot(const Way& way, const char* name) {
   const LibraryScene* scene = find_scene(name);
   SceneDef def = scene->make({});
-  def.analysis.method = way.method;
-  def.analysis.solver = way.solver;
+  def.analysis.options.method = way.method;
+  def.analysis.options.solver = way.solver;
   def.analysis.steps = 1;
   auto built = must(build(def));
   const StepReport r = built.world.advance(1);

@@ -32,7 +32,7 @@ SceneDef block() {
   s.dirichlet = {hold};
   s.analysis.type = AnalysisType::dynamics;
   s.analysis.steps = 10;
-  s.gravity = {0, 0, -1};
+  s.analysis.options.gravity = {0, 0, -1};
   return s;
 }
 

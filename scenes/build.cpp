@@ -1,10 +1,9 @@
 #include <cmath>
-#include <set>
 
 #include "isochor/mesh_io.h"
 #include "isochor/schemes.h"
 #include "scenes/body_parts.h"
-#include "scenes/obstacle_files.h"
+#include "scenes/effects/kind.h"
 #include "scenes/step_measures.h"
 
 namespace isochor {
@@ -48,10 +47,6 @@ Result<Mesh> make_mesh(const SceneBody& body, const std::string& folder, Display
     }
   }
   return mesh;
-}
-
-std::string place(const char* list, std::size_t i) {
-  return std::string(list) + "[" + std::to_string(i) + "]";
 }
 
 // Surfaces and node sets that the scene names by where they are.
@@ -100,80 +95,11 @@ Result<void> add_bodies(const SceneDef& scene, const BuildOptions& options, Buil
   return {};
 }
 
-std::vector<VolumeRows> volume_rows(const SceneDef& scene) {
-  if (scene.volumes) return *scene.volumes;
-  std::vector<VolumeRows> rows(scene.bodies.size());
-  for (std::size_t b = 0; b < rows.size(); ++b) {
-    rows[b].def.body = static_cast<BodyId>(b);
-    if (b > 0) rows[b].def.name += " " + scene.bodies[b].name;
-  }
-  return rows;
-}
-
-// Supports come before cavities, whose caps they hold.
 Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, BuiltScene& built) {
-  std::string error;
-  const auto add = [&](EffectPtr effect) {
-    if (options.parts) options.parts->effects.push_back(effect);
-    auto id = built.world.add(std::move(effect));
-    if (!id && error.empty()) error = id.error();
-    return id ? id.value() : EffectId{};
-  };
-  for (const VolumeRows& rows : volume_rows(scene)) {
-    if (!rows.none) add(volume(rows.def));
+  EffectAdder adder(scene, options.parts, built);
+  for (const EffectKind* kind : kinds_by_phase()) {
+    if (auto r = kind->add(*kind, adder); !r) return r;
   }
-  for (std::size_t d = 0; d < scene.dirichlet.size(); ++d) {
-    DirichletDef def = scene.dirichlet[d];
-    if (def.bone.keys.empty() && !def.bone.file.empty()) {
-      auto track = read_poses(path_in(scene.folder, def.bone.file));
-      if (!track) return Error{place("dirichlet", d) + ".bone: " + track.error()};
-      def.bone = std::move(track).value();
-    }
-    built.dirichlet.push_back(add(dirichlet(def)));
-  }
-  for (const auto& def : scene.tractions) built.tractions.push_back(add(traction(def)));
-  for (const auto& def : scene.pressures) built.pressures.push_back(add(pressure(def)));
-  for (const auto& def : scene.damping) add(damping(def));
-  for (const auto& def : scene.epidermis) add(epidermis(def));
-  for (const auto& def : scene.membranes) add(membrane(def));
-  for (const auto& def : scene.forces) built.forces.push_back(add(point_force(def)));
-  for (CavityDef def : scene.cavities) {
-    // The liquid feels the gravity of the scene.
-    if (def.density > 0 && def.gravity == Vec3{}) {
-      def.gravity = scene.gravity;
-      def.gravity_curve = scene.gravity_amount;
-    }
-    built.cavities.push_back(add(cavity(def)));
-  }
-  for (const auto& def : scene.valves) built.valves.push_back(add(valve(def)));
-  for (const auto& def : scene.cables) built.cables.push_back(add(cable(def)));
-  for (const auto& def : scene.windings) add(winding(def));
-  for (const auto& def : scene.layers) add(strain_limit(def));
-  for (const auto& def : scene.ties) add(tie(def));
-  SolidFiles solids(scene.folder);
-  for (std::size_t r = 0; r < scene.rigid_bodies.size(); ++r) {
-    RigidBodyDef def = scene.rigid_bodies[r];
-    if (auto loaded = solids.load(def.shape); !loaded)
-      return Error{place("rigid_bodies", r) + ".shape: " + loaded.error()};
-    built.rigid_shapes.push_back(def.shape);
-    add(rigid_body(def));
-  }
-  // After all supports: what they hold wholly has no contact.
-  for (std::size_t c = 0; c < scene.contacts.size(); ++c) {
-    ContactDef def = scene.contacts[c];
-    PoseTrack& motion = def.obstacle.motion;
-    if (motion.keys.empty() && !motion.file.empty()) {
-      auto track = read_poses(path_in(scene.folder, motion.file));
-      if (!track) return Error{place("contacts", c) + ".obstacle.motion: " + track.error()};
-      motion = std::move(track).value();
-    }
-    if (auto loaded = solids.load(def.obstacle); !loaded)
-      return Error{place("contacts", c) + ".obstacle: " + loaded.error()};
-    built.obstacles.push_back(def.obstacle);
-    add(contact(def));
-  }
-  for (const auto& def : scene.surface_contacts) add(surface_contact(def));
-  if (!error.empty()) return Error{error};
   return {};
 }
 
@@ -201,42 +127,34 @@ Result<void> check_watched(const SceneDef& scene, const BuiltScene& built) {
   return {};
 }
 
-}  // namespace
-
-Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
-  if (auto r = check_scene(scene); !r) return Error{r.error()};
-  WorldOptions world_options;
-  const AnalysisDef& a = scene.analysis;
-  world_options.scheme = make_scheme(a);
-  world_options.method = a.method;
-  world_options.solver = a.solver;
-  world_options.threads = options.threads;
-  world_options.max_iterations = a.max_iterations;
-  world_options.definiteness = a.definiteness;
-  world_options.force_tolerance = a.force_tolerance;
-  world_options.row_tolerance = a.row_tolerance;
-  world_options.smallest_fraction = a.smallest_fraction;
-  world_options.transient_rescue = a.transient_rescue;
-  world_options.time_error = a.time_error;
-  world_options.consistent_mass = a.consistent_mass;
-  world_options.sweeps = a.sweeps;
-  world_options.gravity = scene.gravity;
-  world_options.gravity_curve = scene.gravity_amount;
-  auto world = World::create(std::move(world_options));
-  if (!world) return Error{world.error()};
-  BuiltScene built{std::move(world).value(), {}, {}, {}, {}, {}, {}, {}};
-  if (auto r = add_bodies(scene, options, built); !r) return Error{r.error()};
-  if (auto r = add_effects(scene, options, built); !r) return Error{r.error()};
-  if (auto r = built.world.compile(); !r) return Error{r.error()};
-  if (auto r = check_watched(scene, built); !r) return Error{r.error()};
+// How bodies move at the start.
+Result<void> set_motion(const SceneDef& scene, BuiltScene& built) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const Vec3 v = scene.bodies[b].velocity, w = scene.bodies[b].angular_velocity;
     if (v == Vec3{} && w == Vec3{}) continue;
     const Vec3 center = built.world.measures(built.bodies[b]).center_of_mass;
     std::vector<Vec3> all;
     for (const Vec3& x : built.world.rest_positions(built.bodies[b])) all.push_back(v + cross(w, x - center));
-    if (auto r = built.world.set_velocities(built.bodies[b], all); !r) return Error{r.error()};
+    if (auto r = built.world.set_velocities(built.bodies[b], all); !r) return r;
   }
+  return {};
+}
+
+}  // namespace
+
+Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
+  if (auto r = check_scene(scene); !r) return Error{r.error()};
+  WorldOptions world_options = scene.analysis.options;
+  world_options.scheme = make_scheme(scene.analysis);
+  world_options.threads = options.threads;
+  auto world = World::create(std::move(world_options));
+  if (!world) return Error{world.error()};
+  BuiltScene built{std::move(world).value()};
+  if (auto r = add_bodies(scene, options, built); !r) return Error{r.error()};
+  if (auto r = add_effects(scene, options, built); !r) return Error{r.error()};
+  if (auto r = built.world.compile(); !r) return Error{r.error()};
+  if (auto r = check_watched(scene, built); !r) return Error{r.error()};
+  if (auto r = set_motion(scene, built); !r) return Error{r.error()};
   return built;
 }
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <set>
 
-#include "scenes/scene.h"
+#include "scenes/effects/kind.h"
 
 namespace isochor {
 
@@ -18,58 +18,24 @@ std::string number(double v) {
   return text;
 }
 
-std::string place(const char* list, std::size_t i) {
-  return std::string(list) + "[" + std::to_string(i) + "]";
-}
-
-// A name fit for a message: what would end or garble a line is shown as a question mark.
-std::string printable(std::string text) {
-  for (char& c : text) {
-    const auto u = static_cast<unsigned char>(c);
-    if (u < 0x20 || u == 0x7f) c = '?';
-  }
-  return text;
-}
-
-// Names become file names, CSV columns and keys of the summary.
-Result<void> check_name(const std::string& where, const std::string& name) {
-  if (name.empty()) return Error{where + ".name is empty; give it a name"};
-  if (name.size() > 100)
-    return Error{where + ".name has " + std::to_string(name.size()) + " characters; 100 are allowed"};
-  for (const char c : name) {
-    const auto u = static_cast<unsigned char>(c);
-    if (u < 0x20 || u == 0x7f) {
-      char code[8];
-      std::snprintf(code, sizeof code, "U+%04X", u);
-      return Error{where + ".name = \"" + printable(name) + "\" has the control character " + code +
-                   ", which file names and tables cannot hold; remove it"};
-    }
-    if (c == '/' || c == '\\' || c == '"' || c == ',') {
-      return Error{where + ".name = \"" + printable(name) + "\" has the character '" + c +
-                   "', which file names or tables cannot hold; take another"};
-    }
-  }
-  return {};
-}
-
-template <class T, class Name>
-Result<void> check_names(const char* list, const std::vector<T>& items, Name name_of,
+// Of a list whose items have names; `seen`: what is used already.
+template <class NameOf>
+Result<void> check_names(const std::string& list, std::size_t size, NameOf name_of,
                          std::set<std::string>& seen) {
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    const std::string& name = name_of(items[i]);
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::string& name = name_of(i);
     if (auto r = check_name(place(list, i), name); !r) return r;
-    if (!seen.insert(name).second) {
+    if (!seen.insert(name).second)
       return Error{place(list, i) + ".name = \"" + name + "\" is used already; names must differ"};
-    }
   }
   return {};
 }
 
 template <class T>
-Result<void> check_names(const char* list, const std::vector<T>& items) {
+Result<void> check_names(const std::string& list, const std::vector<T>& items) {
   std::set<std::string> seen;
   return check_names(
-      list, items, [](const T& t) -> const std::string& { return t.name; }, seen);
+      list, items.size(), [&](std::size_t i) -> const std::string& { return items[i].name; }, seen);
 }
 
 Result<void> check_all_names(const SceneDef& s) {
@@ -77,69 +43,27 @@ Result<void> check_all_names(const SceneDef& s) {
   if (auto r = check_names("bodies", s.bodies); !r) return r;
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     const std::string body = place("bodies", b);
-    if (auto r = check_names((body + ".surfaces").c_str(), s.bodies[b].surfaces); !r) return r;
-    if (auto r = check_names((body + ".node_sets").c_str(), s.bodies[b].node_sets); !r) return r;
+    if (auto r = check_names(body + ".surfaces", s.bodies[b].surfaces); !r) return r;
+    if (auto r = check_names(body + ".node_sets", s.bodies[b].node_sets); !r) return r;
   }
   if (auto r = check_names("probes", s.probes); !r) return r;
   if (auto r = check_names("metrics", s.metrics); !r) return r;
-  // Effects share one set of names: reactions and gauges are told apart by them.
+  // Effects and orientations share one set of names: reactions and gauges are told apart by them.
   std::set<std::string> seen;
-  const auto plain = [](const auto& t) -> const std::string& { return t.name; };
-  if (s.volumes) {
-    const auto inner = [](const VolumeRows& v) -> const std::string& { return v.def.name; };
-    if (auto r = check_names("volumes", *s.volumes, inner, seen); !r) return r;
+  for (const EffectKind* kind : effect_kinds) {
+    const auto name_of = [&](std::size_t i) -> const std::string& { return kind->name(s, i); };
+    if (auto r = check_names(kind->key, kind->size(s), name_of, seen); !r) return r;
   }
-  if (auto r = check_names("dirichlet", s.dirichlet, plain, seen); !r) return r;
-  if (auto r = check_names("cavities", s.cavities, plain, seen); !r) return r;
-  if (auto r = check_names("tractions", s.tractions, plain, seen); !r) return r;
-  if (auto r = check_names("pressures", s.pressures, plain, seen); !r) return r;
-  if (auto r = check_names("damping", s.damping, plain, seen); !r) return r;
-  if (auto r = check_names("epidermis", s.epidermis, plain, seen); !r) return r;
-  if (auto r = check_names("membranes", s.membranes, plain, seen); !r) return r;
-  if (auto r = check_names("ties", s.ties, plain, seen); !r) return r;
-  if (auto r = check_names("cables", s.cables, plain, seen); !r) return r;
-  if (auto r = check_names("windings", s.windings, plain, seen); !r) return r;
-  if (auto r = check_names("layers", s.layers, plain, seen); !r) return r;
-  if (auto r = check_names("valves", s.valves, plain, seen); !r) return r;
-  if (auto r = check_names("rigid_bodies", s.rigid_bodies, plain, seen); !r) return r;
-  if (auto r = check_names("contacts", s.contacts, plain, seen); !r) return r;
-  if (auto r = check_names("surface_contacts", s.surface_contacts, plain, seen); !r) return r;
-  if (auto r = check_names("orientations", s.orientations, plain, seen); !r) return r;
-  return check_names("forces", s.forces, plain, seen);
-}
-
-Result<void> check_curve(const std::string& where, const Curve& curve) {
-  if (curve.points.empty()) return Error{where + " is empty; give a number or points [[time, value], ...]"};
-  double last = -std::numeric_limits<double>::infinity();
-  for (const auto& p : curve.points) {
-    if (!std::isfinite(p[0]) || !std::isfinite(p[1]))
-      return Error{where + " has a value that is no finite number"};
-    if (p[0] < last) {
-      return Error{where + " goes back in time from " + number(last) + " to " + number(p[0]) +
-                   "; list its points by ascending time"};
-    }
-    last = p[0];
-  }
-  return {};
-}
-
-template <class T>
-Result<void> check_curves(const char* list, const std::vector<T>& items) {
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    if (auto r = check_curve(place(list, i) + ".amount", items[i].amount); !r) return r;
-  }
-  return {};
+  const auto name_of = [&](std::size_t i) -> const std::string& { return s.orientations[i].name; };
+  return check_names("orientations", s.orientations.size(), name_of, seen);
 }
 
 Result<void> check_all_curves(const SceneDef& s) {
-  if (auto r = check_curve("gravity_amount", s.gravity_amount); !r) return r;
-  if (auto r = check_curves("dirichlet", s.dirichlet); !r) return r;
-  if (auto r = check_curves("cavities", s.cavities); !r) return r;
-  if (auto r = check_curves("tractions", s.tractions); !r) return r;
-  if (auto r = check_curves("pressures", s.pressures); !r) return r;
-  if (auto r = check_curves("cables", s.cables); !r) return r;
-  if (auto r = check_curves("valves", s.valves); !r) return r;
-  return check_curves("forces", s.forces);
+  if (auto r = check_curve("gravity_amount", s.analysis.options.gravity_curve); !r) return r;
+  for (const EffectKind* kind : effect_kinds) {
+    if (auto r = kind->check(*kind, s); !r) return r;
+  }
+  return {};
 }
 
 Result<void> check_analysis(const AnalysisDef& a) {
@@ -179,16 +103,16 @@ Result<void> check_analysis(const AnalysisDef& a) {
   if (a.path_step && a.type != AnalysisType::statics) {
     return Error{"analysis.path_step belongs to statics; remove it or set analysis.type to \"static\""};
   }
-  if (!(a.time_error >= 0) || !std::isfinite(a.time_error)) {
-    return Error{"analysis.time_error = " + number(a.time_error) +
+  if (!(a.options.time_error >= 0) || !std::isfinite(a.options.time_error)) {
+    return Error{"analysis.time_error = " + number(a.options.time_error) +
                  "; it must be zero (no control) or a positive part of the scene's length"};
   }
-  if (a.type == AnalysisType::statics && (a.time_error > 0 || a.consistent_mass)) {
-    return Error{"analysis." + std::string(a.time_error > 0 ? "time_error" : "consistent_mass") +
+  if (a.type == AnalysisType::statics && (a.options.time_error > 0 || a.options.consistent_mass)) {
+    return Error{"analysis." + std::string(a.options.time_error > 0 ? "time_error" : "consistent_mass") +
                  " belongs to dynamics; remove it or set analysis.type to \"dynamic\""};
   }
-  if (!(a.smallest_fraction > 0) || a.smallest_fraction > 1) {
-    return Error{"analysis.smallest_fraction = " + number(a.smallest_fraction) +
+  if (!(a.options.smallest_fraction > 0) || a.options.smallest_fraction > 1) {
+    return Error{"analysis.smallest_fraction = " + number(a.options.smallest_fraction) +
                  "; it must be positive and at most 1"};
   }
   return {};
@@ -300,39 +224,55 @@ Result<void> check_lattice(const std::string& where, const LatticeMesh& lattice,
   return {};
 }
 
+Result<void> check_mesh_file(const std::string& where, const MeshFile& file) {
+  if (file.path.empty()) return Error{where + ".file is empty; name a mesh file"};
+  if (!(file.scale > 0) || !std::isfinite(file.scale))
+    return Error{where + ".scale = " + number(file.scale) + "; it must be a positive number"};
+  if (!std::isfinite(dot(file.turn, file.turn)))
+    return Error{where + ".turn has a component that is no finite number"};
+  if (!std::isfinite(dot(file.offset, file.offset)))
+    return Error{where + ".offset has a coordinate that is no finite number"};
+  return {};
+}
+
 Result<void> check_bodies(const SceneDef& s) {
   if (s.bodies.empty()) return Error{"bodies is empty; a scene needs at least one body"};
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
-    if (s.bodies[b].materials.empty()) {
-      return Error{place("bodies", b) + ".materials is empty; give the body a material"};
+    const SceneBody& body = s.bodies[b];
+    const std::string where = place("bodies", b);
+    if (body.materials.empty()) return Error{where + ".materials is empty; give the body a material"};
+    if (const auto* lattice = std::get_if<LatticeMesh>(&body.mesh)) {
+      if (auto r = check_lattice(where + ".mesh.lattice", *lattice, body.element); !r) return r;
     }
-    if (const auto* lattice = std::get_if<LatticeMesh>(&s.bodies[b].mesh)) {
-      if (auto r = check_lattice(place("bodies", b) + ".mesh.lattice", *lattice, s.bodies[b].element); !r)
-        return r;
-    }
-    const auto* file = std::get_if<MeshFile>(&s.bodies[b].mesh);
-    if (!file) continue;
-    if (file->path.empty()) return Error{place("bodies", b) + ".mesh.file is empty; name a mesh file"};
-    if (!(file->scale > 0) || !std::isfinite(file->scale)) {
-      return Error{place("bodies", b) + ".mesh.scale = " + number(file->scale) +
-                   "; it must be a positive number"};
-    }
-    if (!std::isfinite(dot(file->turn, file->turn))) {
-      return Error{place("bodies", b) + ".mesh.turn has a component that is no finite number"};
-    }
-    if (!std::isfinite(dot(file->offset, file->offset))) {
-      return Error{place("bodies", b) + ".mesh.offset has a coordinate that is no finite number"};
+    if (const auto* file = std::get_if<MeshFile>(&body.mesh)) {
+      if (auto r = check_mesh_file(where + ".mesh", *file); !r) return r;
     }
   }
+  return {};
+}
+
+Result<void> check_probes(const SceneDef& s) {
   for (std::size_t i = 0; i < s.probes.size(); ++i) {
     const Vec3& p = s.probes[i].point;
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       return Error{place("probes", i) + ".point has a coordinate that is no finite number"};
-    }
     const auto b = static_cast<Index>(s.probes[i].body);
-    if (b < 0 || static_cast<std::size_t>(b) >= s.bodies.size()) {
+    if (b < 0 || static_cast<std::size_t>(b) >= s.bodies.size())
       return Error{place("probes", i) + ".body: there is no body number " + std::to_string(b)};
-    }
+  }
+  return {};
+}
+
+Result<void> check_outputs(const OutputDef& o) {
+  if (o.every < 0)
+    return Error{"outputs.every = " + std::to_string(o.every) + "; give 0 (no frames) or a number of steps"};
+  if (o.checkpoint_steps < 0) {
+    return Error{"outputs.checkpoint_steps = " + std::to_string(o.checkpoint_steps) +
+                 "; give 0 (none) or a number of steps"};
+  }
+  if (!(o.checkpoint_seconds >= 0) || !std::isfinite(o.checkpoint_seconds)) {
+    return Error{"outputs.checkpoint_seconds = " + number(o.checkpoint_seconds) +
+                 " s; give 0 (none) or a positive number"};
   }
   return {};
 }
@@ -346,21 +286,11 @@ StepPlan plan_steps(const AnalysisDef& a) {
 
 Result<void> check_scene(const SceneDef& s) {
   if (auto r = check_bodies(s); !r) return r;
+  if (auto r = check_probes(s); !r) return r;
   if (auto r = check_all_names(s); !r) return r;
   if (auto r = check_analysis(s.analysis); !r) return r;
   if (auto r = check_all_curves(s); !r) return r;
-  if (s.outputs.every < 0) {
-    return Error{"outputs.every = " + std::to_string(s.outputs.every) +
-                 "; give 0 (no frames) or a number of steps"};
-  }
-  if (s.outputs.checkpoint_steps < 0) {
-    return Error{"outputs.checkpoint_steps = " + std::to_string(s.outputs.checkpoint_steps) +
-                 "; give 0 (none) or a number of steps"};
-  }
-  if (!(s.outputs.checkpoint_seconds >= 0) || !std::isfinite(s.outputs.checkpoint_seconds)) {
-    return Error{"outputs.checkpoint_seconds = " + number(s.outputs.checkpoint_seconds) +
-                 " s; give 0 (none) or a positive number"};
-  }
+  if (auto r = check_outputs(s.outputs); !r) return r;
   return check_metrics(s);
 }
 

@@ -5,6 +5,7 @@
 
 #include "engine/scene/builder.h"
 #include "engine/system/system.h"
+#include "scenes/effects/kind.h"
 
 namespace isochor {
 
@@ -66,15 +67,8 @@ std::vector<EffectNote> notes_of(const SceneDef& scene, bool guarded) {
   std::vector<EffectNote> out;
   for (const SceneBody& body : scene.bodies)
     out.push_back({"body " + quoted(body.name), std::string("of the scene; ") + element_name(body.element)});
-  if (!scene.volumes) {
-    out.push_back({"volume rows", "by default: the scene names none, so every body has one row a node"});
-  } else {
-    for (const VolumeRows& rows : *scene.volumes) {
-      if (rows.none)
-        out.push_back({"no volume rows", "asked for: the body keeps its complete one-field energy"});
-      else
-        out.push_back({"volume rows " + quoted(rows.def.name), "of the scene"});
-    }
+  for (const EffectKind* kind : kinds_by_phase()) {
+    if (kind->phase == EffectPhase::volume_rows) kind->explain(*kind, scene, out);
   }
   const bool asked = std::any_of(scene.bodies.begin(), scene.bodies.end(),
                                  [](const SceneBody& b) { return b.guard_stiffness.has_value(); });
@@ -82,16 +76,11 @@ std::vector<EffectNote> notes_of(const SceneDef& scene, bool guarded) {
     out.push_back({"element guard", asked ? "of the scene" : "by default: the body is edge-smoothed"});
   if (scene.analysis.type == AnalysisType::dynamics)
     out.push_back({"inertia", "of the scene: the analysis is dynamic"});
-  if (dot(scene.gravity, scene.gravity) > 0) out.push_back({"gravity", "of the scene"});
-  const auto list = [&](const char* kind, const auto& defs) {
-    for (const auto& def : defs) out.push_back({std::string(kind) + " " + quoted(def.name), "of the scene"});
-  };
-  list("support", scene.dirichlet);
-  list("traction", scene.tractions);
-  list("pressure", scene.pressures);
-  list("force", scene.forces);
-  list("cavity", scene.cavities);
-  list("damping", scene.damping);
+  const Vec3& gravity = scene.analysis.options.gravity;
+  if (dot(gravity, gravity) > 0) out.push_back({"gravity", "of the scene"});
+  for (const EffectKind* kind : kinds_by_phase()) {
+    if (kind->phase != EffectPhase::volume_rows) kind->explain(*kind, scene, out);
+  }
   return out;
 }
 

@@ -109,7 +109,7 @@ double quantity(const SceneDef& scene, const MetricDef& m, const std::vector<Ste
       break;
   }
   int sum = 0;
-  for (const StepRecord& s : records) sum += s.step <= r.step ? s.iterations : 0;
+  for (const StepRecord& s : records) sum += s.step <= r.step ? s.work.iterations : 0;
   return sum;
 }
 

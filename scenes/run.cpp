@@ -109,11 +109,9 @@ void Run::record(int step, const StepReport& report) {
   StepRecord r;
   r.step = step;
   r.time = world.time();
-  r.iterations = report.iterations;
+  r.work = report;
   r.substeps = report.substeps;
   r.rejected = report.rejected_substeps;
-  r.stand_ins = report.stand_ins;
-  r.factorizations = report.factorizations;
   r.force_residual = report.force_residual;
   r.row_residual = report.row_residual;
   r.seconds = report.seconds.total;
@@ -142,14 +140,12 @@ void Run::record(int step, const StepReport& report) {
         {"path", "equilibrium", "unstable directions", "", static_cast<double>(report.unstable_directions)});
   }
   record_measures(scene_, built_, r);
-  for (const EffectId id : built_.dirichlet) {
+  for (const EffectId id : built_.ids(dirichlet_kind)) {
     const auto [force, moment] = world.reaction(id);
     r.reactions.push_back({force, moment});
   }
   result_.records.push_back(std::move(r));
-  result_.newton_iterations += report.iterations;
-  result_.factorizations += report.factorizations;
-  result_.solves += report.iterations + report.corrections;
+  result_.work += report;
   result_.state_hash = world.state_hash();
   result_.size = world.size();  // the factor is known after the first step
   result_.wall_s = wall_before_ + seconds_since(start_);
@@ -162,9 +158,7 @@ void Run::remember(int step, const RunOutputs& outputs) {
   complete_.page_bytes = outputs.page_bytes();
   const std::vector<std::byte> state = built_.world.save();
   complete_.state.assign(reinterpret_cast<const char*>(state.data()), state.size());
-  complete_.newton_iterations = result_.newton_iterations;
-  complete_.factorizations = result_.factorizations;
-  complete_.solves = result_.solves;
+  complete_.work = result_.work;
   complete_.wall_s = result_.wall_s;
   complete_.stages = result_.stages;
   complete_.warnings = result_.warnings;
@@ -196,9 +190,7 @@ Result<void> Run::resume(const RunCheckpoint& c) {
   const std::string program = version() + ", " + build_description();
   result_.resumed_at = c.step;
   result_.records = c.records;
-  result_.newton_iterations = c.newton_iterations;
-  result_.factorizations = c.factorizations;
-  result_.solves = c.solves;
+  result_.work = c.work;
   result_.stages = c.stages;
   result_.state_hash = built_.world.state_hash();
   for (const StepRecord& r : c.records) doubtful_steps_ += r.warning.empty() ? 0 : 1;
@@ -282,9 +274,7 @@ void Run::march(RunOutputs* outputs) {
       record(step, report);
       if (options_.on_step) options_.on_step(result_.records.back(), plan.steps);
     } else {
-      result_.newton_iterations += report.iterations;
-      result_.factorizations += report.factorizations;
-      result_.solves += report.iterations + report.corrections;
+      result_.work += report;
       result_.stages += report.seconds;
     }
     if (!over && last) {

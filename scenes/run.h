@@ -23,8 +23,8 @@ struct Reaction {
 struct StepRecord {
   int step = 0;
   double time = 0;  // [s], or load factor
-  int iterations = 0, substeps = 0, rejected = 0, factorizations = 0;
-  int stand_ins = 0;  // increments that the method of the scene left to another one
+  SolveCounters work;
+  int substeps = 0, rejected = 0;
   double force_residual = 0, row_residual = 0, constitutive_residual = 0;
   // What the volume rows leave over, the largest of all bodies; says nothing of volume that a compressible
   // body has lost, see `total` and `parts`.
@@ -87,8 +87,7 @@ struct RunResult {
   bool ended_before = false;  // nothing was left to resume: the run had converged
   int steps_asked = 0;
   std::vector<StepRecord> records;
-  int newton_iterations = 0, factorizations = 0;
-  int solves = 0;  // with the factors of an iteration: the iteration itself and corrections
+  SolveCounters work;  // of all steps
   double wall_s = 0;
   StageSeconds stages;
   WorldSize size;

@@ -19,7 +19,7 @@ struct RunCheckpoint {
   std::string state;    // World::save()
   std::vector<StepRecord> records;
   std::vector<std::string> warnings;
-  int newton_iterations = 0, factorizations = 0, solves = 0;
+  SolveCounters work;
   double wall_s = 0;
   StageSeconds stages;
   std::uint64_t page_bytes = 0;  // of the frames kept for the page

@@ -40,7 +40,7 @@ auto interpolated(const EmbeddedPoint& p, const Read& read) {
 
 // Gravity tells which way is up; without it the y axis of these scenes is.
 char up_axis(const SceneDef& scene) {
-  return std::abs(scene.gravity.z) > std::abs(scene.gravity.y) ? 'z' : 'y';
+  return std::abs(scene.analysis.options.gravity.z) > std::abs(scene.analysis.options.gravity.y) ? 'z' : 'y';
 }
 
 }  // namespace
@@ -133,8 +133,8 @@ std::vector<PageSeries> all_series(const RunView& view) {
     }
   }
   add_measures(view, out);
-  out.push_back(
-      series(r, "Newton iterations", "iterations", "", [](const StepRecord& s) { return s.iterations; }));
+  out.push_back(series(r, "Newton iterations", "iterations", "",
+                       [](const StepRecord& s) { return s.work.iterations; }));
   // A logarithmic chart cannot show the zero of the rest state.
   const auto positive = [](double v) { return std::max(v, 1e-18); };
   out.push_back(series(r, "Errors", "left by volume rows", "",
@@ -204,7 +204,7 @@ PageReport report(const RunView& view) {
               {"Unknowns", std::to_string(r.size.displacement_unknowns) + " displacements, " +
                                std::to_string(r.size.multipliers) + " multipliers"},
               {"Steps", std::to_string(r.records.back().step) + " of " + std::to_string(r.steps_asked)},
-              {"Newton iterations", std::to_string(r.newton_iterations)},
+              {"Newton iterations", std::to_string(r.work.iterations)},
               {"Wall time", number(r.wall_s, "%.2f") + " s, " + std::to_string(r.threads) +
                                 (r.threads == 1 ? " thread" : " threads")}};
   const StepRecord& end = r.records.back();

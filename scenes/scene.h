@@ -4,17 +4,18 @@
 // from a test; build() turns them into a world and run_scene() of run.h runs them. Nothing here throws.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "isochor/contact.h"
-#include "isochor/effects.h"
 #include "isochor/generate.h"
 #include "isochor/lattice.h"
 #include "isochor/mesh_select.h"
 #include "isochor/world.h"
+#include "scenes/effects/list.h"
 
 namespace isochor {
 
@@ -97,12 +98,6 @@ struct SceneBody {
   Vec3 velocity{}, angular_velocity{};  // [m/s], [rad/s]
 };
 
-// Volume rows of a body; `none` leaves it to its complete one-field energy, which locks near nu = 0.5.
-struct VolumeRows {
-  VolumeDef def;
-  bool none = false;
-};
-
 enum class AnalysisType : std::uint8_t { statics, dynamics };
 enum class SchemeWord : std::uint8_t { implicit_euler, bdf2, generalized_alpha, newmark, implicit_midpoint };
 
@@ -116,16 +111,9 @@ struct AnalysisDef {
   // Statics along the path of equilibria, through limit points: length of a step as World::follow() counts it
   // [m]. `steps` is then the most steps taken, `duration` the load factor that ends the run.
   std::optional<double> path_step;
-  Method method = Method::automatic;
-  int sweeps = 20;  // of method position_based
-  Solver solver = Solver::automatic;
-  int max_iterations = 60;
-  Definiteness definiteness = Definiteness::exact;
-  double force_tolerance = 1e-9, row_tolerance = 1e-10;  // see WorldOptions
-  double smallest_fraction = 1.0 / 64;
-  bool transient_rescue = true;
-  double time_error = 0;
-  bool consistent_mass = false;
+  // What the world is asked for. Its scheme comes from the above, its threads and log from who runs the
+  // scene.
+  WorldOptions options;
 };
 
 // A named material point: results are interpolated in the cell that holds it at rest.
@@ -200,33 +188,11 @@ struct MetricDef {
   std::string unit;
 };
 
-struct SceneDef {
+struct SceneDef : SceneEffects {
   std::string name = "scene";  // names the outputs
   std::string title, description;
   std::string folder;  // relative mesh paths start here; not part of a scene file
-  // Effects name their body by its place in this list.
   std::vector<SceneBody> bodies;
-  // Absent: nodal rows on every body. Bodies that a list leaves out have the complete one-field energy.
-  std::optional<std::vector<VolumeRows>> volumes;
-  std::vector<DirichletDef> dirichlet;
-  std::vector<CavityDef> cavities;
-  std::vector<TractionDef> tractions;
-  std::vector<PressureDef> pressures;
-  std::vector<PointForceDef> forces;
-  std::vector<DampingDef> damping;
-  std::vector<EpidermisDef> epidermis;
-  std::vector<MembraneDef> membranes;
-  // Bones of supports are read from PoseTrack::file when they have no keyframes.
-  std::vector<TieDef> ties;
-  std::vector<CableDef> cables;
-  std::vector<WindingDef> windings;
-  std::vector<StrainLimitDef> layers;
-  std::vector<ValveDef> valves;
-  std::vector<RigidBodyDef> rigid_bodies;
-  std::vector<ContactDef> contacts;
-  std::vector<SurfaceContactDef> surface_contacts;
-  Vec3 gravity{};                             // [m/s^2]
-  Curve gravity_amount = Curve::constant(1);  // scales it over time
   AnalysisDef analysis;
   std::vector<ProbeDef> probes;
   std::vector<OrientationDef> orientations;
@@ -253,11 +219,16 @@ struct DisplaySurface {
 
 struct BuiltScene {
   World world;
-  std::vector<BodyId> bodies;
-  std::vector<EffectId> dirichlet, cavities, tractions, forces, cables, valves, pressures = {};
-  std::vector<DisplaySurface> surfaces = {};  // by body; empty where its mesh is shown
-  std::vector<Obstacle> obstacles = {};       // by contact, with what their files hold
-  std::vector<Obstacle> rigid_shapes = {};    // by rigid body, likewise
+  std::vector<BodyId> bodies = {};
+  std::map<const EffectKind*, std::vector<EffectId>> effects = {};  // in the order of the scene's lists
+  std::vector<DisplaySurface> surfaces = {};                        // by body; empty where its mesh is shown
+  std::vector<Obstacle> obstacles = {};                             // by contact, with what their files hold
+  std::vector<Obstacle> rigid_shapes = {};                          // by rigid body, likewise
+
+  std::span<const EffectId> ids(const EffectKind& kind) const {
+    const auto found = effects.find(&kind);
+    return found == effects.end() ? std::span<const EffectId>() : found->second;
+  }
 };
 
 // What build() hands to the world.

@@ -25,8 +25,12 @@ std::string to_json(const SceneDef& scene);
 // Titles, and when checkpoints are made, do not count. Empty: nothing.
 std::string scene_difference(const std::string& kept, const SceneDef& scene);
 
-// Every key that the parser knows, with its kind: "bodies[].materials[].young: number". For the schema's
-// test.
+// Every key that there is, with its kind: "bodies[].materials[].young: number".
 std::vector<std::string> scene_file_keys();
+// The same for people, with unit, default and meaning: a line a key, and tables of Markdown.
+std::string scene_key_lines();
+std::string scene_key_tables();
+// The JSON Schema of scene files.
+std::string scene_schema();
 
 }  // namespace isochor

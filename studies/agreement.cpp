@@ -18,8 +18,8 @@ struct End {
 };
 
 Result<End> run(SceneDef scene, Method method, Solver solver, int most_steps, int threads) {
-  scene.analysis.method = method;
-  scene.analysis.solver = solver;
+  scene.analysis.options.method = method;
+  scene.analysis.options.solver = solver;
   End end;
   auto built = build(scene, {threads});
   if (!built) return Error{built.error()};

@@ -141,9 +141,9 @@ void describe(Measured& m, const RunResult& r) {
   m.factor_nonzeros = r.size.factor_nonzeros;
   m.engine_bytes = static_cast<std::int64_t>(r.size.engine_bytes);
   m.steps = r.records.empty() ? 0 : r.records.back().step;
-  m.iterations = r.newton_iterations;
-  m.factorizations = r.factorizations;
-  m.solves = r.solves;
+  m.iterations = r.work.iterations;
+  m.factorizations = r.work.factorizations;
+  m.solves = r.work.solves();
   m.threads = r.threads;
   char hash[20];
   std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(r.state_hash));

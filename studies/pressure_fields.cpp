@@ -74,7 +74,8 @@ Result<Numbers> column_pressure(const SceneDef& scene, int threads) {
   const Solved& s = solved.value();
   std::vector<double> exact;
   for (const Vec3& p : s.center)
-    exact.push_back(scene.bodies[0].materials[0].density * scene.gravity.z * (box->upper.z - p.z));
+    exact.push_back(scene.bodies[0].materials[0].density * scene.analysis.options.gravity.z *
+                    (box->upper.z - p.z));
   return Numbers{{"pressure error", distance(s.pressure, exact, s.volume)},
                  {"sinking", s.sinking / (box->upper.z - box->lower.z)},
                  {"iterations", s.iterations}};

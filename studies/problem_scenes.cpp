@@ -47,7 +47,7 @@ SceneDef compressed_block(const SceneVariant& variant) {
 SceneDef swing(const SceneVariant& variant) {
   SceneDef s = cantilever(variant);
   s.name = "swing";
-  s.gravity_amount = Curve::constant(1);
+  s.analysis.options.gravity_curve = Curve::constant(1);
   s.analysis.type = AnalysisType::dynamics;
   s.analysis.scheme = SchemeWord::bdf2;
   s.analysis.duration = kSwingDuration;

@@ -148,6 +148,13 @@ Result<void> check_element(const BodyDef& def) {
     return Error{"body \"" + def.name +
                  "\": a Tet10 mesh needs element \"tet10\"; give a Tet4 mesh for linear tets"};
   }
+  // Anything else would be an energy without bound below.
+  if (def.guard_stiffness && !(*def.guard_stiffness >= 0))
+    return Error{"body \"" + def.name + "\": guard_stiffness = " + number(*def.guard_stiffness) +
+                 "; give 0 (off) or a positive number"};
+  if (!(def.guard_threshold > 0))
+    return Error{"body \"" + def.name + "\": guard_threshold = " + number(def.guard_threshold) +
+                 "; it must be positive, the J below which the guard acts"};
   return {};
 }
 

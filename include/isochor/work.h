@@ -17,6 +17,8 @@ struct SolveCounters {
   std::int64_t dual_iterations = 0;    // of conjugate gradients on multipliers
   std::int64_t linear_iterations = 0;  // of Solver::iterative, for directions
 
+  int solves() const { return iterations + corrections; }  // with the factors of an iteration
+
   SolveCounters& operator+=(const SolveCounters& o) {
     iterations += o.iterations;
     corrections += o.corrections;

@@ -25,7 +25,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
   return row[b.size()];
 }
 
-std::string list_of(const std::vector<std::string>& words) {
+std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const auto& w : words) text += (text.empty() ? "" : ", ") + w;
   return text;
@@ -58,8 +58,12 @@ std::string suggestion(const std::string& word, const std::vector<std::string>& 
   return nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?";
 }
 
+void Reader::know(const char* key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
+}
+
 const Json* Reader::find(const char* key) {
-  known_.emplace_back(key);
+  know(key);
   if (!json_.is_object() || !context_.error.empty()) return nullptr;
   const auto it = json_.find(key);
   return it == json_.end() ? nullptr : &*it;
@@ -77,7 +81,7 @@ void Reader::fail_type(const std::string& where, const char* expected, const Jso
 
 void Reader::fail_word(const char* key, const Json& j, const std::vector<std::string>& known) {
   const std::string near = j.is_string() ? suggestion(j.get<std::string>(), known) : "";
-  context_.fail(at(key), shown(j) + " is none of: " + list_of(known) + near);
+  context_.fail(at(key), shown(j) + " is none of: " + joined(known) + near);
 }
 
 bool Reader::expect_list(const Json& j, const char* key) {
@@ -122,108 +126,110 @@ bool Reader::read_vector(const Json& j, const std::string& where, Vec3& value) {
   return true;
 }
 
-void Reader::text(const char* key, std::string& value) {
-  const Json* j = find(key);
+void Reader::text(const Key& key, std::string& value, const std::string&) {
+  const Json* j = find(key.name);
   if (!j) return;
   if (j->is_string())
     value = j->get<std::string>();
   else
-    fail_type(at(key), "a text \"...\"", *j);
+    fail_type(at(key.name), "a text \"...\"", *j);
 }
 
-void Reader::required_text(const char* key, std::string& value) {
-  if (require(key)) text(key, value);
+void Reader::required_text(const Key& key, std::string& value) {
+  if (require(key.name)) text(key, value, {});
 }
 
-void Reader::number(const char* key, double& value, double) {
-  if (const Json* j = find(key)) read_number(*j, at(key), value);
+void Reader::number(const Key& key, double& value, double) {
+  if (const Json* j = find(key.name)) read_number(*j, at(key.name), value);
 }
 
-void Reader::number_or_inf(const char* key, double& value, double) {
-  const Json* j = find(key);
+void Reader::number_or_inf(const Key& key, double& value, double) {
+  const Json* j = find(key.name);
   if (!j) return;
   if (j->is_string() && j->get_ref<const std::string&>() == "inf")
     value = std::numeric_limits<double>::infinity();
   else if (j->is_number())
-    read_number(*j, at(key), value);
+    read_number(*j, at(key.name), value);
   else
-    fail_type(at(key), "a number or \"inf\"", *j);
+    fail_type(at(key.name), "a number or \"inf\"", *j);
 }
 
-void Reader::optional_number(const char* key, std::optional<double>& value) {
-  const Json* j = find(key);
+void Reader::optional_number(const Key& key, std::optional<double>& value) {
+  const Json* j = find(key.name);
   double v = 0;
-  if (j && read_number(*j, at(key), v)) value = v;
+  if (j && read_number(*j, at(key.name), v)) value = v;
 }
 
-void Reader::integer(const char* key, int& value, int) {
-  if (const Json* j = find(key)) read_integer(*j, at(key), value);
+void Reader::integer(const Key& key, int& value, int) {
+  if (const Json* j = find(key.name)) read_integer(*j, at(key.name), value);
 }
 
-void Reader::flag(const char* key, bool& value, bool) {
-  const Json* j = find(key);
+void Reader::flag(const Key& key, bool& value, bool) {
+  const Json* j = find(key.name);
   if (!j) return;
   if (j->is_boolean())
     value = j->get<bool>();
   else
-    fail_type(at(key), "true or false", *j);
+    fail_type(at(key.name), "true or false", *j);
 }
 
-void Reader::vector(const char* key, Vec3& value, const Vec3&) {
-  if (const Json* j = find(key)) read_vector(*j, at(key), value);
+void Reader::vector(const Key& key, Vec3& value, const Vec3&) {
+  if (const Json* j = find(key.name)) read_vector(*j, at(key.name), value);
 }
 
-void Reader::required_vector(const char* key, Vec3& value) {
-  if (const Json* j = require(key)) read_vector(*j, at(key), value);
+void Reader::required_vector(const Key& key, Vec3& value) {
+  if (const Json* j = require(key.name)) read_vector(*j, at(key.name), value);
 }
 
-void Reader::integers(const char* key, std::array<int, 3>& value) {
-  const Json* j = find(key);
+void Reader::integers(const Key& key, std::array<int, 3>& value) {
+  const Json* j = find(key.name);
   if (!j) return;
-  if (!j->is_array() || j->size() != 3) return fail_type(at(key), "three whole numbers [nx, ny, nz]", *j);
+  if (!j->is_array() || j->size() != 3)
+    return fail_type(at(key.name), "three whole numbers [nx, ny, nz]", *j);
   for (std::size_t k = 0; k < 3; ++k)
-    read_integer((*j)[k], at(key) + "[" + std::to_string(k) + "]", value[k]);
+    read_integer((*j)[k], at(key.name) + "[" + std::to_string(k) + "]", value[k]);
 }
 
-void Reader::names(const char* key, std::vector<std::string>& value) {
-  const Json* j = find(key);
+void Reader::names(const Key& key, std::vector<std::string>& value) {
+  const Json* j = find(key.name);
   if (!j) return;
   if (j->is_string()) {
     value = {j->get<std::string>()};
     return;
   }
-  if (!j->is_array()) return fail_type(at(key), "a name or a list of names", *j);
+  if (!j->is_array()) return fail_type(at(key.name), "a name or a list of names", *j);
   for (std::size_t i = 0; i < j->size(); ++i) {
-    if (!(*j)[i].is_string()) return fail_type(at(key) + "[" + std::to_string(i) + "]", "a name", (*j)[i]);
+    if (!(*j)[i].is_string())
+      return fail_type(at(key.name) + "[" + std::to_string(i) + "]", "a name", (*j)[i]);
     value.push_back((*j)[i].get<std::string>());
   }
 }
 
-void Reader::indices(const char* key, std::vector<Index>& value) {
-  const Json* j = find(key);
-  if (!j || !expect_list(*j, key)) return;
+void Reader::indices(const Key& key, std::vector<Index>& value) {
+  const Json* j = find(key.name);
+  if (!j || !expect_list(*j, key.name)) return;
   for (std::size_t i = 0; i < j->size(); ++i) {
-    if (!read_integer((*j)[i], at(key) + "[" + std::to_string(i) + "]", value.emplace_back())) return;
+    if (!read_integer((*j)[i], at(key.name) + "[" + std::to_string(i) + "]", value.emplace_back())) return;
   }
 }
 
-void Reader::numbers(const char* key, std::vector<double>& value) {
-  const Json* j = find(key);
-  if (!j || !expect_list(*j, key)) return;
+void Reader::numbers(const Key& key, std::vector<double>& value) {
+  const Json* j = find(key.name);
+  if (!j || !expect_list(*j, key.name)) return;
   for (std::size_t i = 0; i < j->size(); ++i) {
-    if (!read_number((*j)[i], at(key) + "[" + std::to_string(i) + "]", value.emplace_back())) return;
+    if (!read_number((*j)[i], at(key.name) + "[" + std::to_string(i) + "]", value.emplace_back())) return;
   }
 }
 
-void Reader::optional_vector(const char* key, std::optional<Vec3>& value) {
-  if (const Json* j = find(key)) read_vector(*j, at(key), value.emplace());
+void Reader::optional_vector(const Key& key, std::optional<Vec3>& value) {
+  if (const Json* j = find(key.name)) read_vector(*j, at(key.name), value.emplace());
 }
 
-void Reader::paths(const char* key, std::vector<std::vector<Vec3>>& value) {
-  const Json* j = find(key);
-  if (!j || !expect_list(*j, key)) return;
+void Reader::paths(const Key& key, std::vector<std::vector<Vec3>>& value) {
+  const Json* j = find(key.name);
+  if (!j || !expect_list(*j, key.name)) return;
   for (std::size_t i = 0; i < j->size(); ++i) {
-    const std::string place = at(key) + "[" + std::to_string(i) + "]";
+    const std::string place = at(key.name) + "[" + std::to_string(i) + "]";
     if (!(*j)[i].is_array()) return fail_type(place, "a list of points", (*j)[i]);
     auto& path = value.emplace_back();
     for (std::size_t k = 0; k < (*j)[i].size(); ++k) {
@@ -232,11 +238,11 @@ void Reader::paths(const char* key, std::vector<std::vector<Vec3>>& value) {
   }
 }
 
-void Reader::points(const char* key, std::vector<Vec3>& value) {
-  const Json* j = find(key);
-  if (!j || !expect_list(*j, key)) return;
+void Reader::points(const Key& key, std::vector<Vec3>& value) {
+  const Json* j = find(key.name);
+  if (!j || !expect_list(*j, key.name)) return;
   for (std::size_t i = 0; i < j->size(); ++i) {
-    if (!read_vector((*j)[i], at(key) + "[" + std::to_string(i) + "]", value.emplace_back())) return;
+    if (!read_vector((*j)[i], at(key.name) + "[" + std::to_string(i) + "]", value.emplace_back())) return;
   }
 }
 
@@ -251,16 +257,16 @@ bool Reader::read_box(const Json& j, const std::string& where, std::array<Vec3, 
   return true;
 }
 
-void Reader::boxes(const char* key, std::vector<std::array<Vec3, 2>>& value) {
-  const Json* j = find(key);
-  if (!j || !expect_list(*j, key)) return;
+void Reader::boxes(const Key& key, std::vector<std::array<Vec3, 2>>& value) {
+  const Json* j = find(key.name);
+  if (!j || !expect_list(*j, key.name)) return;
   for (std::size_t i = 0; i < j->size(); ++i) {
-    if (!read_box((*j)[i], at(key) + "[" + std::to_string(i) + "]", value.emplace_back())) return;
+    if (!read_box((*j)[i], at(key.name) + "[" + std::to_string(i) + "]", value.emplace_back())) return;
   }
 }
 
-void Reader::optional_box(const char* key, std::optional<std::array<Vec3, 2>>& value) {
-  if (const Json* j = find(key)) read_box(*j, at(key), value.emplace());
+void Reader::optional_box(const Key& key, std::optional<std::array<Vec3, 2>>& value) {
+  if (const Json* j = find(key.name)) read_box(*j, at(key.name), value.emplace());
 }
 
 void Reader::read_direction(const Json& j, const std::string& where, std::vector<Vec3>& value) {
@@ -274,47 +280,49 @@ void Reader::read_direction(const Json& j, const std::string& where, std::vector
   }
 }
 
-void Reader::directions(const char* key, std::vector<Vec3>& value) {
-  const Json* j = find(key);
+void Reader::directions(const Key& key, std::vector<Vec3>& value) {
+  const Json* j = find(key.name);
   if (!j) return;
   if (j->is_string())
-    read_direction(*j, at(key), value);
-  else if (expect_list(*j, key)) {
+    read_direction(*j, at(key.name), value);
+  else if (expect_list(*j, key.name)) {
     for (std::size_t i = 0; i < j->size(); ++i) {
-      read_direction((*j)[i], at(key) + "[" + std::to_string(i) + "]", value);
+      read_direction((*j)[i], at(key.name) + "[" + std::to_string(i) + "]", value);
     }
   }
-  if (value.empty()) fail_type(at(key), "at least one direction; leave the key out to hold all", *j);
+  if (value.empty()) fail_type(at(key.name), "at least one direction; leave the key out to hold all", *j);
 }
 
-void Reader::angle(const char* radians, const char* degrees, double& value) {
-  not_both(radians, degrees);
-  const Json* r = find(radians);
-  const Json* d = find(degrees);
-  if (!r && !d) return fail_here(std::string("\"") + radians + "\" [rad] or \"" + degrees + "\" is missing");
+void Reader::angle(const Key& radians, const Key& degrees, double& value) {
+  not_both(radians.name, degrees.name);
+  const Json* r = find(radians.name);
+  const Json* d = find(degrees.name);
+  if (!r && !d)
+    return fail_here(std::string("\"") + radians.name + "\" [rad] or \"" + degrees.name + "\" is missing");
   if (r)
-    read_number(*r, at(radians), value);
-  else if (read_number(*d, at(degrees), value))
+    read_number(*r, at(radians.name), value);
+  else if (read_number(*d, at(degrees.name), value))
     value *= std::numbers::pi / 180;
 }
 
-void Reader::optional_angle(const char* radians, const char* degrees, double& value, double) {
-  const bool given = json_.is_object() && (json_.contains(radians) || json_.contains(degrees));
+void Reader::optional_angle(const Key& radians, const Key& degrees, double& value, double) {
+  const bool given = json_.is_object() && (json_.contains(radians.name) || json_.contains(degrees.name));
   if (given) return angle(radians, degrees, value);
-  known_.insert(known_.end(), {radians, degrees});
+  know(radians.name);
+  know(degrees.name);
 }
 
-void Reader::body(const char* key, BodyId& value) {
-  const Json* j = find(key);
+void Reader::body(const Key& key, BodyId& value) {
+  const Json* j = find(key.name);
   if (!j) return;
-  if (!j->is_string()) return fail_type(at(key), "the name of a body", *j);
+  if (!j->is_string()) return fail_type(at(key.name), "the name of a body", *j);
   const auto it = std::find(context_.bodies.begin(), context_.bodies.end(), j->get_ref<const std::string&>());
-  if (it == context_.bodies.end()) return fail_word(key, *j, context_.bodies);
+  if (it == context_.bodies.end()) return fail_word(key.name, *j, context_.bodies);
   value = static_cast<BodyId>(it - context_.bodies.begin());
 }
 
-void Reader::optional_body(const char* key, std::optional<BodyId>& value) {
-  if (!find(key)) return;
+void Reader::optional_body(const Key& key, std::optional<BodyId>& value) {
+  if (!find(key.name)) return;
   BodyId id{};
   body(key, id);
   value = id;
@@ -345,20 +353,20 @@ void Reader::read_curve(const Json& j, const std::string& where, Curve& value, C
   }
 }
 
-void Reader::curve(const char* key, Curve& value, CurveStart start, bool) {
-  if (const Json* j = find(key))
-    read_curve(*j, at(key), value, start);
+void Reader::curve(const Key& key, Curve& value, CurveStart start, bool) {
+  if (const Json* j = find(key.name))
+    read_curve(*j, at(key.name), value, start);
   else
     read_plain_curve(1, value, start);
 }
 
-void Reader::required_curve(const char* key, Curve& value, CurveStart start) {
-  if (const Json* j = require(key)) read_curve(*j, at(key), value, start);
+void Reader::required_curve(const Key& key, Curve& value, CurveStart start) {
+  if (const Json* j = require(key.name)) read_curve(*j, at(key.name), value, start);
 }
 
-void Reader::note(const char* key) {
+void Reader::note(const Key& key) {
   std::string ignored;
-  text(key, ignored);
+  text(key, ignored, {});
 }
 
 void Reader::not_both(const char* a, const char* b) {
@@ -367,23 +375,63 @@ void Reader::not_both(const char* a, const char* b) {
   }
 }
 
-void Reader::either(const char* file, const char* box, const char* lattice,
-                    std::variant<MeshFile, BoxMeshDef, LatticeMesh>& mesh) {
-  not_both(file, box);
-  not_both(file, lattice);
-  not_both(box, lattice);
+void Reader::mesh_form(std::variant<MeshFile, BoxMeshDef, LatticeMesh>& mesh) {
+  not_both("file", "box");
+  not_both("file", "lattice");
+  not_both("box", "lattice");
   if (!json_.is_object()) return;
-  if (!json_.contains(file) && !json_.contains(box) && !json_.contains(lattice)) {
-    fail_here(std::string("\"") + file + "\", \"" + box + "\" or \"" + lattice + "\" is missing");
-  }
+  if (!json_.contains("file") && !json_.contains("box") && !json_.contains("lattice"))
+    fail_here("\"file\", \"box\" or \"lattice\" is missing");
   // The list of known keys is that of all forms.
-  for (const char* key : {file, box, lattice, "scale"}) known_.emplace_back(key);
-  if (json_.contains(box)) mesh = BoxMeshDef{};
-  if (json_.contains(lattice)) mesh = LatticeMesh{};
-  if (json_.contains(box) && json_.contains("scale"))
+  for (const char* key : {"file", "box", "lattice", "scale"}) know(key);
+  if (json_.contains("box")) mesh = BoxMeshDef{};
+  if (json_.contains("lattice")) mesh = LatticeMesh{};
+  if (json_.contains("box") && json_.contains("scale"))
     fail_here("\"scale\" belongs to a file; give the box its size");
-  if (json_.contains(lattice) && json_.contains("scale"))
+  if (json_.contains("lattice") && json_.contains("scale"))
     fail_here("\"scale\" belongs to a file; a lattice has its own inside");
+}
+
+void Reader::choice(const Key& key, int& value, int, std::span<const keys::Word> words) {
+  const Json* j = find(key.name);
+  if (!j) return;
+  std::vector<std::string> known;
+  for (const keys::Word& word : words) {
+    if (j->is_string() && j->get_ref<const std::string&>() == word.name) {
+      value = word.value;
+      return;
+    }
+    known.emplace_back(word.name);
+  }
+  fail_word(key.name, *j, known);
+}
+
+void Reader::read_object(const Json& j, const std::string& where, const keys::Object& object) {
+  Reader inner(j, where, context_);
+  object.keys(inner, object.value);
+  inner.finish();
+}
+
+void Reader::object_at(const Key& key, const keys::Object& object) {
+  if (const Json* j = require(key.name)) read_object(*j, at(key.name), object);
+}
+
+void Reader::settings_at(const Key& key, const keys::Object& object) {
+  if (const Json* j = find(key.name)) read_object(*j, at(key.name), object);
+}
+
+bool Reader::optional_at(const Key& key, const keys::Object& object, bool) {
+  const Json* j = find(key.name);
+  if (j) read_object(*j, at(key.name), object);
+  return j != nullptr;
+}
+
+bool Reader::list_at(const Key& key, const keys::List& list, bool) {
+  const Json* j = find(key.name);
+  if (!j || !expect_list(*j, key.name)) return false;
+  for (std::size_t i = 0; i < j->size() && context_.error.empty(); ++i)
+    read_object((*j)[i], at(key.name) + "[" + std::to_string(i) + "]", list.append(list.list));
+  return true;
 }
 
 void Reader::finish() {
@@ -391,7 +439,7 @@ void Reader::finish() {
   for (const auto& [key, value] : json_.items()) {
     if (std::find(known_.begin(), known_.end(), key) != known_.end()) continue;
     std::string near = suggestion(key, known_);
-    if (near.empty()) near = "; known here: " + list_of(known_);
+    if (near.empty()) near = "; known here: " + joined(known_);
     context_.fail(at(key), "unknown key (value " + shown(value) + ")" + near);
     return;
   }

@@ -8,6 +8,7 @@
 #include "scenes/json/overrides.h"
 #include "scenes/json/reader.h"
 #include "scenes/json/writer.h"
+#include "scenes/keys/parts.h"
 
 namespace isochor {
 
@@ -79,7 +80,7 @@ Result<SceneDef> from_json(const Json& json, const std::string& source, const st
   scene_json::ReadContext context;
   try {
     scene_json::Reader reader(json, "", context);
-    scene_json::describe(reader, scene);
+    keys::describe(reader, scene);
     reader.finish();
   } catch (const std::exception& e) {
     return Error{source + ": " + plain(e.what())};
@@ -101,35 +102,8 @@ Json json_of(const SceneDef& scene) {
   Json json;
   SceneDef copy = scene;  // descriptions take what they may fill
   scene_json::Writer writer(json, copy);
-  scene_json::describe(writer, copy);
+  keys::describe(writer, copy);
   return json;
-}
-
-// Short values on one line, so that vectors and curves read as such.
-std::string inline_text(const Json& json) {
-  if (!json.is_structured()) return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  std::string text;
-  for (const auto& [key, value] : json.items()) {
-    text += text.empty() ? "" : ", ";
-    if (json.is_object()) text += Json(key).dump() + ": ";
-    text += inline_text(value);
-  }
-  return json.is_object() ? "{" + text + "}" : "[" + text + "]";
-}
-
-std::string pretty(const Json& json, std::size_t indent) {
-  constexpr std::size_t kWidth = 100;
-  const std::string line = inline_text(json);
-  if (!json.is_structured() || json.empty() || (indent > 0 && indent + line.size() < kWidth)) return line;
-  const std::string margin(indent + 2, ' ');
-  std::string text;
-  for (const auto& [key, value] : json.items()) {
-    text += (text.empty() ? "" : ",\n") + margin;
-    const std::string lead = json.is_object() ? Json(key).dump() + ": " : "";
-    text += lead + pretty(value, indent + 2);
-  }
-  const std::string end = "\n" + std::string(indent, ' ');
-  return json.is_object() ? "{\n" + text + end + "}" : "[\n" + text + end + "]";
 }
 
 std::string described(const std::string& source, const Overrides& overrides) {
@@ -175,7 +149,7 @@ Result<SceneDef> override_scene(const SceneDef& scene, const Overrides& override
 }
 
 std::string to_json(const SceneDef& scene) {
-  return pretty(json_of(scene), 0) + "\n";
+  return scene_json::text_of(json_of(scene)) + "\n";
 }
 
 namespace {
@@ -195,7 +169,7 @@ std::string dotted(const std::string& pointer) {
 }
 
 std::string shortened(const Json& json) {
-  const std::string text = inline_text(json);
+  const std::string text = scene_json::inline_text(json);
   return text.size() > 60 ? text.substr(0, 57) + "..." : text;
 }
 
@@ -216,7 +190,8 @@ std::string scene_difference(const std::string& kept, const SceneDef& scene) {
       if (all.empty()) continue;
     }
     const std::string where = dotted(path);
-    if (op == "remove") return where + " was " + shortened(before[Json::json_pointer(path)]) + " and is left out";
+    if (op == "remove")
+      return where + " was " + shortened(before[Json::json_pointer(path)]) + " and is left out";
     if (op == "add") return where + " was left out and is " + shortened(change["value"]);
     return where + " was " + shortened(before[Json::json_pointer(path)]) + " and is " +
            shortened(change["value"]);

@@ -81,9 +81,9 @@ Json summary(const RunResult& r) {
   j["scene"] = r.scene;
   j["steps"] = r.records.empty() ? 0 : r.records.back().step;
   j["steps_asked"] = r.steps_asked;
-  j["newton_iterations"] = r.newton_iterations;
-  j["factorizations"] = r.factorizations;
-  j["solves"] = r.solves;
+  j["newton_iterations"] = r.work.iterations;
+  j["factorizations"] = r.work.factorizations;
+  j["solves"] = r.work.solves();
   j["wall_s"] = r.wall_s;
   j["stage_s"] = stages(r.stages);
   j["unknowns"] = {{"displacement", r.size.displacement_unknowns}, {"multipliers", r.size.multipliers}};

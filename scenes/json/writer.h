@@ -1,134 +1,87 @@
 // Writes a scene as a scene file: values at their defaults are left out.
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <type_traits>
-
-#include "scenes/json/describe.h"
+#include "scenes/json/text.h"
+#include "scenes/keys/keys.h"
 
 namespace isochor::scene_json {
 
-using Json = nlohmann::ordered_json;
+using keys::CurveStart;
+using keys::Key;
 
-// Whole numbers without a decimal point.
-Json plain_number(double value);
-
-class Writer {
+class Writer final : public keys::Visitor {
  public:
   Writer(Json& json, const SceneDef& scene) : json_(json), scene_(scene) { json_ = Json::object(); }
 
-  void text(const char* key, const std::string& value) {
-    if (!value.empty()) json_[key] = value;
+  void about(const char*, const char*) override {}
+  void text(const Key& key, std::string& value, const std::string&) override {
+    if (!value.empty()) json_[key.name] = value;
   }
-  void required_text(const char* key, const std::string& value) { json_[key] = value; }
-  void number(const char* key, double value, double standard) {
-    if (value != standard) json_[key] = plain_number(value);
+  void required_text(const Key& key, std::string& value) override { json_[key.name] = value; }
+  void number(const Key& key, double& value, double standard) override {
+    if (value != standard) json_[key.name] = plain_number(value);
   }
-  void number_or_inf(const char* key, double value, double standard);
-  void optional_number(const char* key, const std::optional<double>& value) {
-    if (value) json_[key] = plain_number(*value);
+  void number_or_inf(const Key& key, double& value, double standard) override;
+  void optional_number(const Key& key, std::optional<double>& value) override {
+    if (value) json_[key.name] = plain_number(*value);
   }
-  void integer(const char* key, int value, int standard) {
-    if (value != standard) json_[key] = value;
+  void integer(const Key& key, int& value, int standard) override {
+    if (value != standard) json_[key.name] = value;
   }
-  void flag(const char* key, bool value, bool standard) {
-    if (value != standard) json_[key] = value;
+  void flag(const Key& key, bool& value, bool standard) override {
+    if (value != standard) json_[key.name] = value;
   }
-  void vector(const char* key, const Vec3& value, const Vec3& standard) {
-    if (!(value == standard)) json_[key] = list_of(value);
+  void vector(const Key& key, Vec3& value, const Vec3& standard) override {
+    if (!(value == standard)) json_[key.name] = list_of(value);
   }
-  void required_vector(const char* key, const Vec3& value) { json_[key] = list_of(value); }
-  void optional_vector(const char* key, const std::optional<Vec3>& value) {
-    if (value) json_[key] = list_of(*value);
+  void required_vector(const Key& key, Vec3& value) override { json_[key.name] = list_of(value); }
+  void optional_vector(const Key& key, std::optional<Vec3>& value) override {
+    if (value) json_[key.name] = list_of(*value);
   }
-  void paths(const char* key, const std::vector<std::vector<Vec3>>& value) {
-    if (value.empty()) return;
-    json_[key] = Json::array();
-    for (const auto& path : value) {
-      Json points = Json::array();
-      for (const Vec3& p : path) points.push_back(list_of(p));
-      json_[key].push_back(std::move(points));
-    }
+  void integers(const Key& key, std::array<int, 3>& value) override { json_[key.name] = value; }
+  void names(const Key& key, std::vector<std::string>& value) override { plain_list(key, value); }
+  void indices(const Key& key, std::vector<Index>& value) override { plain_list(key, value); }
+  void numbers(const Key& key, std::vector<double>& value) override { plain_list(key, value); }
+  void points(const Key& key, std::vector<Vec3>& value) override;
+  void paths(const Key& key, std::vector<std::vector<Vec3>>& value) override;
+  void boxes(const Key& key, std::vector<std::array<Vec3, 2>>& value) override;
+  void optional_box(const Key& key, std::optional<std::array<Vec3, 2>>& value) override {
+    if (value) json_[key.name] = Json::array({list_of((*value)[0]), list_of((*value)[1])});
   }
-  void integers(const char* key, const std::array<int, 3>& value) { json_[key] = value; }
-  void names(const char* key, const std::vector<std::string>& value) {
-    if (!value.empty()) json_[key] = value;
+  void directions(const Key& key, std::vector<Vec3>& value) override;
+  void angle(const Key& radians, const Key&, double& value) override {
+    json_[radians.name] = plain_number(value);
   }
-  void indices(const char* key, const std::vector<Index>& value) {
-    if (!value.empty()) json_[key] = value;
-  }
-  void numbers(const char* key, const std::vector<double>& value) {
-    if (!value.empty()) json_[key] = value;
-  }
-  void points(const char* key, const std::vector<Vec3>& value);
-  void boxes(const char* key, const std::vector<std::array<Vec3, 2>>& value);
-  void directions(const char* key, const std::vector<Vec3>& value);
-  void angle(const char* radians, const char*, double value) { json_[radians] = plain_number(value); }
-  void optional_angle(const char* radians, const char*, double value, double standard) {
+  void optional_angle(const Key& radians, const Key&, double& value, double standard) override {
     number(radians, value, standard);
   }
-  void optional_box(const char* key, const std::optional<std::array<Vec3, 2>>& value) {
-    if (value) json_[key] = Json::array({list_of((*value)[0]), list_of((*value)[1])});
-  }
-  void body(const char* key, BodyId value);
-  void optional_body(const char* key, const std::optional<BodyId>& value);
-  void curve(const char* key, const Curve& value, CurveStart start, bool matters) {
+  void body(const Key& key, BodyId& value) override;
+  void optional_body(const Key& key, std::optional<BodyId>& value) override;
+  void curve(const Key& key, Curve& value, CurveStart start, bool matters) override {
     if (matters) required_curve(key, value, start);
   }
-  void required_curve(const char* key, const Curve& value, CurveStart start);
-  void note(const char*) {}
-  void not_both(const char*, const char*) {}
-  void either(const char*, const char*, const char*, const std::variant<MeshFile, BoxMeshDef, LatticeMesh>&) {
-  }
+  void required_curve(const Key& key, Curve& value, CurveStart start) override;
+  void note(const Key&) override {}
+  void not_both(const char*, const char*) override {}
+  void mesh_form(std::variant<MeshFile, BoxMeshDef, LatticeMesh>&) override {}
+  void bodies_known(const std::vector<SceneBody>&) override {}
+  void analysis_known(const AnalysisDef&) override {}
 
-  template <class E>
-  void word(const char* key, E value, E standard) {
-    if (value == standard) return;
-    for (const auto& [e, name] : Words<E>::list) {
-      if (e == value) json_[key] = name;
-    }
-  }
-  template <class T>
-  void object(const char* key, T& value) {
-    Json inner;
-    write(inner, value);
-    // A selection must be there: what holds points alone selects no nodes.
-    constexpr bool required = std::is_same_v<T, Selection>;
-    if (required && inner.is_null()) inner = Json::object();
-    if (required || !inner.empty()) json_[key] = std::move(inner);
-  }
-  template <class T>
-  void optional_object(const char* key, T& value, bool present) {
-    if (present) write(json_[key], value);
-  }
-  template <class T>
-  void maybe_object(const char* key, std::optional<T>& value) {
-    if (value) write(json_[key], *value);
-  }
-  template <class T>
-  void list(const char* key, std::vector<T>& value) {
-    if (!value.empty()) write_list(key, value);
-  }
-  template <class T>
-  void optional_list(const char* key, std::optional<std::vector<T>>& value) {
-    if (value) write_list(key, *value);
-  }
-  void bodies_known(const std::vector<SceneBody>&) {}
-  void analysis_known(const AnalysisDef&) {}
+ protected:
+  void choice(const Key& key, int& value, int standard, std::span<const keys::Word> words) override;
+  void object_at(const Key& key, const keys::Object& object) override { write(json_[key.name], object); }
+  void settings_at(const Key& key, const keys::Object& object) override;
+  bool optional_at(const Key& key, const keys::Object& object, bool present) override;
+  bool list_at(const Key& key, const keys::List& list, bool present) override;
 
  private:
-  template <class T>
-  void write(Json& json, T& value) {
+  void write(Json& json, const keys::Object& object) {
     Writer inner(json, scene_);
-    describe(inner, value);
+    object.keys(inner, object.value);
   }
   template <class T>
-  void write_list(const char* key, std::vector<T>& value) {
-    Json& all = json_[key] = Json::array();
-    for (T& item : value) {
-      all.push_back(Json::object());
-      write(all.back(), item);
-    }
+  void plain_list(const Key& key, const std::vector<T>& value) {
+    if (!value.empty()) json_[key.name] = value;
   }
   static Json list_of(const Vec3& v) {
     return Json::array({plain_number(v.x), plain_number(v.y), plain_number(v.z)});

@@ -23,7 +23,7 @@ SceneDef beam(const char* name, const char* title, const char* description, cons
     s.dirichlet = {hold("wall", "clamped")};
   }
   s.bodies[0].materials = {rubber(266e3, 0.5, 1070)};
-  s.gravity_amount = Curve::ramp(1);
+  s.analysis.options.gravity_curve = Curve::ramp(1);
   s.analysis.steps = 1;
   s.probes = {{"tip", {}, {1, 0.05, 0.05}}};
   return s;
@@ -37,7 +37,7 @@ SceneDef cantilever(const SceneVariant& v) {
   SceneDef s =
       beam("cantilever", "Cantilever under gravity",
            "A soft beam of 0.1 x 0.1 x 1 m hangs down from its clamped end; the whole load in one step.", v);
-  s.gravity = {0, -9.8, 0};
+  s.analysis.options.gravity = {0, -9.8, 0};
   s.metrics = {against(displacement("tip along", "tip", Component::x), -0.7553, 0.01, kTaylorHood),
                against(displacement("tip down", "tip", Component::y), -0.9395, 0.01, kTaylorHood)};
   keep_volume(s);
@@ -47,7 +47,7 @@ SceneDef cantilever(const SceneVariant& v) {
 SceneDef cantilever_tenth(const SceneVariant& v) {
   SceneDef s = beam("cantilever_tenth", "Cantilever under a tenth of gravity",
                     "A soft beam of 0.1 x 0.1 x 1 m under a tenth of gravity, where bending decides.", v);
-  s.gravity = {0, -0.98, 0};
+  s.analysis.options.gravity = {0, -0.98, 0};
   s.metrics = {against(displacement("tip along", "tip", Component::x), -0.1381, 0.02, kTaylorHood),
                against(displacement("tip down", "tip", Component::y), -0.4763, 0.01, kTaylorHood)};
   keep_volume(s);

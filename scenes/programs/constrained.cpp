@@ -73,7 +73,7 @@ SceneDef pressed_puck(const char* name, const char* title, const SceneVariant& v
   s.volumes = {rows("whole", VolumeSpace::body)};
   s.dirichlet = {hold("base", "bottom"), pressed_in("pressed", {0, 0, -0.015})};
   s.analysis.steps = 50;
-  s.analysis.smallest_fraction = 1.0 / 256;
+  s.analysis.options.smallest_fraction = 1.0 / 256;
   s.outputs.every = 5;
   s.probes = {{"rim", {}, {0.05, 0, 0.03}}};
   s.metrics = {displacement("rim up", "rim", Component::z)};

@@ -35,7 +35,7 @@ SceneDef ball_drop(const SceneVariant& v) {
                        "A soft incompressible ball of 10 cm falls by 10 cm onto a floor and bounces.", "ball",
                        "ball", v);
   s.bodies[0].materials = {rubber(1e5, 0.5)};
-  s.gravity = {0, 0, -9.81};
+  s.analysis.options.gravity = {0, 0, -9.81};
   s.contacts = {against("floor", ObstacleShape::plane, {0, 0, -0.15})};
   s.analysis.type = AnalysisType::dynamics;
   s.analysis.duration = 0.3;
@@ -66,7 +66,7 @@ SceneDef incline(const SceneVariant& v) {
   s.bodies = {b};
   // Down the slope is x, and gravity leans.
   const double slope = std::acos(-1.0) / 6, friction = 0.3;
-  s.gravity = {9.81 * std::sin(slope), 0, -9.81 * std::cos(slope)};
+  s.analysis.options.gravity = {9.81 * std::sin(slope), 0, -9.81 * std::cos(slope)};
   ContactDef floor = against("slope", ObstacleShape::plane, {});
   floor.surfaces = {"z0"};
   floor.friction = friction;
@@ -191,7 +191,7 @@ SceneDef gripper(const SceneVariant& v) {
   table.rigid = "ball";
   table.friction = 0.5;
   s.contacts.push_back(table);
-  s.gravity = {0, 0, -9.81};
+  s.analysis.options.gravity = {0, 0, -9.81};
   s.analysis.type = AnalysisType::dynamics;
   s.analysis.duration = up + 5.2;
   s.analysis.step = 0.04;

@@ -17,8 +17,8 @@ SceneDef finger_lattice(const SceneVariant& v) {
   s.bodies[0].mesh = cubes;
   s.bodies[0].element = v.element.value_or(Element::hex8);
   s.bodies[0].materials = {rubber(100e3, 0.49)};
-  s.gravity = {0, -9.8, 0};
-  s.gravity_amount = Curve::ramp(1);
+  s.analysis.options.gravity = {0, -9.8, 0};
+  s.analysis.options.gravity_curve = Curve::ramp(1);
   DirichletDef clamp;
   clamp.name = "clamp";
   clamp.where.boxes = {{Vec3{-1, -1, -1}, Vec3{0.001, 1, 1}}};

@@ -72,8 +72,8 @@ SceneDef spine(const SceneVariant& v) {
                        "spine", v);
   s.bodies[0].materials = {rubber(266e3, 0.499, 1070)};
   s.dirichlet = {hold("root", "clamped")};
-  s.gravity = {0, -9.8, 0};
-  s.gravity_amount = Curve::ramp(1);
+  s.analysis.options.gravity = {0, -9.8, 0};
+  s.analysis.options.gravity_curve = Curve::ramp(1);
   s.analysis.steps = 5;
   s.probes = {{"tip", {}, {0.280, 0, 0}}};
   s.metrics = {displacement("tip along", "tip", Component::x), displacement("tip down", "tip", Component::y)};

@@ -24,11 +24,11 @@ Solver draw_solver(ChaosRandom& random) {
 }
 
 void draw_limits(ChaosRandom& random, AnalysisDef& a) {
-  if (random.chance(0.15)) a.max_iterations = random.pick({1, 3, 8, 20, 200});
-  if (random.chance(0.15)) a.force_tolerance = random.pick({1e-4, 1e-6, 1e-11});
-  if (random.chance(0.1)) a.row_tolerance = random.pick({1e-4, 1e-6, 1e-8, 1e-12});
-  if (random.chance(0.2)) a.smallest_fraction = random.pick({1.0, 0.25, 1.0 / 256});
-  if (random.chance(0.2)) a.transient_rescue = false;
+  if (random.chance(0.15)) a.options.max_iterations = random.pick({1, 3, 8, 20, 200});
+  if (random.chance(0.15)) a.options.force_tolerance = random.pick({1e-4, 1e-6, 1e-11});
+  if (random.chance(0.1)) a.options.row_tolerance = random.pick({1e-4, 1e-6, 1e-8, 1e-12});
+  if (random.chance(0.2)) a.options.smallest_fraction = random.pick({1.0, 0.25, 1.0 / 256});
+  if (random.chance(0.2)) a.options.transient_rescue = false;
 }
 
 }  // namespace
@@ -69,20 +69,22 @@ void draft_analysis(ChaosDraft& draft) {
     const double wave = draft.length * std::sqrt(draft.density / draft.young);
     const double h = wave * (random.chance(0.8) ? random.decades(-1, 2) : random.decades(-3, 5));
     a.duration = a.steps * h;
-    if (random.chance(0.1)) a.time_error = random.decades(-6, -2);
-    if (random.chance(0.15)) a.consistent_mass = true;
+    if (random.chance(0.1)) a.options.time_error = random.decades(-6, -2);
+    if (random.chance(0.15)) a.options.consistent_mass = true;
   } else {
     a.duration = random.chance(0.85) ? 1 : random.between(0.1, 3);
     if (random.chance(0.08)) a.path_step = draft.length * random.decades(-3, 0);
   }
   draft.duration = a.duration;
-  a.method = draw_method(random, draft.dynamic);
-  if (a.method == Method::position_based) a.sweeps = random.whole(1, 40);
-  a.solver = draw_solver(random);
-  if (a.method == Method::position_based && random.chance(0.95)) a.consistent_mass = false;
-  if (a.path_step && (a.method == Method::augmented_ascent || a.method == Method::dual_ascent))
-    a.method = Method::saddle_point;
-  if (random.chance(0.3)) a.definiteness = random.pick({Definiteness::projected, Definiteness::absolute});
+  a.options.method = draw_method(random, draft.dynamic);
+  if (a.options.method == Method::position_based) a.options.sweeps = random.whole(1, 40);
+  a.options.solver = draw_solver(random);
+  if (a.options.method == Method::position_based && random.chance(0.95)) a.options.consistent_mass = false;
+  if (a.path_step &&
+      (a.options.method == Method::augmented_ascent || a.options.method == Method::dual_ascent))
+    a.options.method = Method::saddle_point;
+  if (random.chance(0.3))
+    a.options.definiteness = random.pick({Definiteness::projected, Definiteness::absolute});
   draw_limits(random, a);
   draft.scene().outputs.every = 0;
   draft.scene().outputs.page = false;

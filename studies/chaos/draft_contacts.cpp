@@ -59,9 +59,10 @@ Obstacle draw_obstacle(ChaosRandom& random, ChaosDraft& draft, const std::string
 // Methods that rest on symmetric matrices refuse coupled friction; a few such scenes are enough.
 bool coupling_fits(ChaosRandom& random, const ChaosDraft& draft) {
   const AnalysisDef& a = draft.out.scene.analysis;
-  const bool unsymmetric =
-      a.method == Method::automatic || a.method == Method::saddle_point || a.method == Method::condensation;
-  return (unsymmetric && a.solver != Solver::iterative && !a.path_step) || random.chance(0.03);
+  const bool unsymmetric = a.options.method == Method::automatic ||
+                           a.options.method == Method::saddle_point ||
+                           a.options.method == Method::condensation;
+  return (unsymmetric && a.options.solver != Solver::iterative && !a.path_step) || random.chance(0.03);
 }
 
 void draw_friction(ChaosRandom& random, const ChaosDraft& draft, ContactDef& def) {

@@ -186,8 +186,9 @@ void draft_loads(ChaosDraft& draft) {
   if (random.chance(0.4)) {
     // The weight over the size, in units of the stiffness.
     const double g = draft.young / (draft.density * draft.length) * ChaosDraft::load_factor(random);
-    s.gravity = g * gravity_direction(random);
-    s.gravity_amount = draft.dynamic && random.chance(0.7) ? Curve::constant(1) : draft.curve(random, 1);
+    s.analysis.options.gravity = g * gravity_direction(random);
+    s.analysis.options.gravity_curve =
+        draft.dynamic && random.chance(0.7) ? Curve::constant(1) : draft.curve(random, 1);
   }
   for (std::size_t b = 0; b < draft.bodies.size(); ++b) {
     const DraftBody& body = draft.bodies[b];

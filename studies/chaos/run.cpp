@@ -246,7 +246,7 @@ void ChaosRun::march() {
       overshot(seconds_since(start) - drive_.wall_seconds,
                processor_seconds() - processor - drive_.wall_seconds);
     // Sweeps are of a fixed number.
-    const bool sweeps = scene_.analysis.method == Method::position_based;
+    const bool sweeps = scene_.analysis.options.method == Method::position_based;
     const int allowed = sweeps ? 0 : drive_.budget_iterations;
     if (budgeted(step) && allowed > 0 && report.iterations > allowed) {
       broken("overshoot",

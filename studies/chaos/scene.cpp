@@ -83,7 +83,7 @@ void add_effect_parts(const SceneDef& s, std::set<std::string>& parts) {
   note("winding", !s.windings.empty());
   note("layer", !s.layers.empty());
   note("rigid body", !s.rigid_bodies.empty());
-  note("gravity", !(s.gravity == Vec3{}));
+  note("gravity", !(s.analysis.options.gravity == Vec3{}));
   for (const ContactDef& c : s.contacts) {
     if (c.against.empty()) parts.insert("contact, " + word(kShapes, c.obstacle.shape));
     note("contact, friction", c.friction > 0);

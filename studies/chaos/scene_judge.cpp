@@ -164,7 +164,8 @@ Vec3 target_of(const DirichletDef& d, double t, const Vec3& X) {
 bool is_isolated(const SceneDef& s) {
   if (s.analysis.type != AnalysisType::dynamics) return false;
   if (!s.tractions.empty() || !s.forces.empty() || !s.cavities.empty() || !s.cables.empty()) return false;
-  if (!(s.gravity == Vec3{}) && (s.gravity_amount.points.size() != 1 || !s.rigid_bodies.empty()))
+  if (!(s.analysis.options.gravity == Vec3{}) &&
+      (s.analysis.options.gravity_curve.points.size() != 1 || !s.rigid_bodies.empty()))
     return false;
   const bool driven = std::any_of(s.contacts.begin(), s.contacts.end(), [](const ContactDef& c) {
     return !c.obstacle.motion.keys.empty() || c.initial_overlap == InitialOverlap::resolve;
@@ -230,8 +231,8 @@ SceneDef with_poses(SceneDef scene, const BuiltScene& built) {
 SceneJudge::SceneJudge(const SceneDef& scene, const BuiltScene& built)
     : scene_(with_poses(scene, built)), state_(built.world, promises(scene, built)) {
   const AnalysisDef& a = scene_.analysis;
-  limits_.rows = std::max(1e-8, 10 * a.row_tolerance);
-  if (a.method == Method::position_based) limits_.rows = HUGE_VAL;
+  limits_.rows = std::max(1e-8, 10 * a.options.row_tolerance);
+  if (a.options.method == Method::position_based) limits_.rows = HUGE_VAL;
   // Its rows are met in the middle of a step; what the end misses is of second order, and this is no more.
   if (a.type == AnalysisType::dynamics && a.scheme == SchemeWord::implicit_midpoint) limits_.rows = 0.1;
   isolated_ = is_isolated(scene_);
@@ -276,7 +277,7 @@ void SceneJudge::watch_energy(const BuiltScene& built, std::size_t b) {
   const double volume = state_.shape(built.world, b).rest_volume, density = materials.front().density;
   const bool one_density = std::all_of(materials.begin(), materials.end(),
                                        [&](const MaterialDef& m) { return m.density == density; });
-  if (!one_density && !(scene_.gravity == Vec3{})) isolated_ = carried_by_supports_ = false;
+  if (!one_density && !(scene_.analysis.options.gravity == Vec3{})) isolated_ = carried_by_supports_ = false;
   mass_.push_back(density * volume);
   center_.push_back(built.world.measures(built.bodies[b]).center_of_mass);
   for (const MaterialDef& m : materials) energy_noise_ += 1e-9 * stiffness_of(m, scene_.folder) * volume;
@@ -284,7 +285,7 @@ void SceneJudge::watch_energy(const BuiltScene& built, std::size_t b) {
   // Positions are rounded where they are, and velocities are differences of positions.
   double far = 0;
   for (const Vec3& X : built.world.rest_positions(built.bodies[b])) far = std::max(far, length(X));
-  const double h = plan_steps(scene_.analysis).h * scene_.analysis.smallest_fraction;
+  const double h = plan_steps(scene_.analysis).h * scene_.analysis.options.smallest_fraction;
   const double v = 8 * std::numeric_limits<double>::epsilon() * far / h;
   energy_noise_ += mass_.back() * v * v;
 }
@@ -353,7 +354,7 @@ std::optional<Finding> SceneJudge::support(const World& world, std::size_t def) 
   const AnalysisDef& a = scene_.analysis;
   const bool in_the_middle = a.type == AnalysisType::dynamics && a.scheme == SchemeWord::implicit_midpoint;
   if (d.treatment == SupportTreatment::stiffness || in_the_middle) return {};
-  if (d.treatment == SupportTreatment::multiplier && a.method == Method::position_based) return {};
+  if (d.treatment == SupportTreatment::multiplier && a.options.method == Method::position_based) return {};
   const auto x = world.positions(d.where.body);
   const auto X = world.rest_positions(d.where.body);
   for (const Index i : supported_[def]) {
@@ -393,11 +394,11 @@ std::optional<Finding> SceneJudge::obstacle(const BuiltScene& built, std::size_t
 
 double SceneJudge::weight_gone_down(const World& world) const {
   double work = 0;
-  if (scene_.gravity == Vec3{}) return 0;
-  const double amount = evaluate(scene_.gravity_amount, world.time());
+  if (scene_.analysis.options.gravity == Vec3{}) return 0;
+  const double amount = evaluate(scene_.analysis.options.gravity_curve, world.time());
   for (std::size_t b = 0; b < mass_.size(); ++b) {
     const Vec3 way = world.measures(static_cast<BodyId>(b)).center_of_mass - center_[b];
-    work += amount * mass_[b] * dot(scene_.gravity, way);
+    work += amount * mass_[b] * dot(scene_.analysis.options.gravity, way);
   }
   return work;
 }
@@ -409,7 +410,7 @@ std::optional<Finding> SceneJudge::energy(const World& world) {
   const double now = world.kinetic_energy() + world.elastic_energy() - fallen;
   const double scale = start_energy_ + most_gone_down_;
   const bool promised = scene_.analysis.scheme == SchemeWord::implicit_euler &&
-                        scene_.analysis.method != Method::position_based;
+                        scene_.analysis.options.method != Method::position_based;
   if (now - start_energy_ <= (promised ? 0.05 : 0.5) * scale + energy_noise_) return {};
   return Finding{"energy", "nothing but gravity works, and the energy grew from " + number(start_energy_) +
                                " J to " + number(now) + " J (weights went down by " + number(fallen) + " J)"};
@@ -427,9 +428,9 @@ std::optional<Finding> SceneJudge::balance(const BuiltScene& built) const {
     scale += length(force);
   };
   for (std::size_t d = 0; d < scene_.dirichlet.size(); ++d)
-    add(force_of(world, scene_.dirichlet[d], built.dirichlet[d]));
+    add(force_of(world, scene_.dirichlet[d], built.ids(dirichlet_kind)[d]));
   for (std::size_t b = 0; b < mass_.size(); ++b)
-    add(evaluate(scene_.gravity_amount, t) * mass_[b] * scene_.gravity);
+    add(evaluate(scene_.analysis.options.gravity_curve, t) * mass_[b] * scene_.analysis.options.gravity);
   for (const PointForceDef& f : scene_.forces) add(evaluate(f.amount, t) * f.force);
   for (const TractionDef& d : scene_.tractions) {
     const Mesh& mesh = world.mesh(built.bodies[static_cast<std::size_t>(d.body)]);
@@ -438,7 +439,8 @@ std::optional<Finding> SceneJudge::balance(const BuiltScene& built) const {
   }
   // Forces inside may be far larger than what goes in and out; their rounding is left over.
   const double inside = energy_noise_ / length_;
-  if (length(sum) <= std::max(1e-6, 100 * scene_.analysis.force_tolerance) * scale + inside) return {};
+  if (length(sum) <= std::max(1e-6, 100 * scene_.analysis.options.force_tolerance) * scale + inside)
+    return {};
   return Finding{"balance", "supports and loads add up to " + number(length(sum)) + " N, of forces of " +
                                 number(scale) + " N in all"};
 }

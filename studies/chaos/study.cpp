@@ -85,7 +85,7 @@ std::string chaos_tables(const std::vector<ChaosOutcome>& outcomes, const ChaosS
   for (const ChaosOutcome& o : outcomes) {
     const SceneDef scene = chaos_scene(o.seed, size).scene;
     all["all"].add(o);
-    methods[kMethods[static_cast<std::size_t>(scene.analysis.method)]].add(o);
+    methods[kMethods[static_cast<std::size_t>(scene.analysis.options.method)]].add(o);
     for (const std::string& part : parts_of(scene)) parts[part].add(o);
     if (o.verdict == ChaosVerdict::broken) kinds[o.kind].add(o);
     overshoot = std::max(overshoot, o.overshoot);

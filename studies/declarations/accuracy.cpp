@@ -58,8 +58,8 @@ void add_frugal(std::vector<Cell>& out, const Problem& p, bool quick) {
       c.id += "/frugal";
       c.knobs["tolerance"] = kFrugalTolerance;
       c.knobs["steps"] = p.few_steps;
-      c.scene.analysis.force_tolerance = kFrugalTolerance;
-      c.scene.analysis.row_tolerance = 0.1 * kFrugalTolerance;
+      c.scene.analysis.options.force_tolerance = kFrugalTolerance;
+      c.scene.analysis.options.row_tolerance = 0.1 * kFrugalTolerance;
       c.scene.analysis.steps = p.few_steps;
       out.push_back(std::move(c));
     }
@@ -77,7 +77,7 @@ void add_knobs(std::vector<Cell>& out, const Problem& p, bool quick) {
       Cell c = cell_of(p, f, level, "solver");
       c.id += std::string("/") + word;
       c.labels["solver"] = word;
-      c.scene.analysis.solver = solver;
+      c.scene.analysis.options.solver = solver;
       out.push_back(std::move(c));
     }
     for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-9}) {
@@ -85,8 +85,8 @@ void add_knobs(std::vector<Cell>& out, const Problem& p, bool quick) {
       Cell c = cell_of(p, f, level, "tolerance");
       c.id += "/tolerance_" + text(tolerance, 1);
       c.knobs["tolerance"] = tolerance;
-      c.scene.analysis.force_tolerance = tolerance;
-      c.scene.analysis.row_tolerance = 0.1 * tolerance;
+      c.scene.analysis.options.force_tolerance = tolerance;
+      c.scene.analysis.options.row_tolerance = 0.1 * tolerance;
       out.push_back(std::move(c));
     }
   }

@@ -42,8 +42,8 @@ constexpr Stage kStages[] = {
        apply(formulation("tet4"), s);
        s.cavities.clear();
        s.analysis.duration = kDuration;
-       s.gravity = {0, -9.81, 0};
-       s.gravity_amount = Curve::constant(1);
+       s.analysis.options.gravity = {0, -9.81, 0};
+       s.analysis.options.gravity_curve = Curve::constant(1);
        std::erase_if(s.metrics, [](const MetricDef& m) { return m.quantity == Quantity::cavity_volume; });
      }},
     {"dynamics", [](SceneDef& s) { s.analysis.type = AnalysisType::dynamics; }},

@@ -28,8 +28,8 @@ SceneDef block(const Vec3& upper, std::array<int, 3> divisions, MaterialLaw law 
   m.constants.bulk = std::numeric_limits<double>::infinity();
   b.materials = {m};
   s.bodies = {b};
-  s.gravity = {0, 0, -9.81};
-  s.gravity_amount = Curve::ramp(1);
+  s.analysis.options.gravity = {0, 0, -9.81};
+  s.analysis.options.gravity_curve = Curve::ramp(1);
   s.analysis.steps = 1;
   return s;
 }

@@ -34,8 +34,8 @@ std::vector<Cell> cells(bool quick) {
         Cell c = problem_cell(p, f, level);
         c.id += std::string("/") + way.name;
         c.labels["solver"] = way.name;
-        c.scene.analysis.solver = way.solver;
-        c.scene.analysis.method = way.method;
+        c.scene.analysis.options.solver = way.solver;
+        c.scene.analysis.options.method = way.method;
         out.push_back(std::move(c));
       }
     }

@@ -21,7 +21,7 @@ void add_loads(bool quick, std::vector<Cell>& out) {
       Cell c = problem_cell(p, f, quick ? 0 : 1);
       c.id = "load/" + std::string(f.name) + "/" + text(load);
       c.knobs["load"] = load;
-      c.scene.gravity = {0, -9.8 * load, 0};
+      c.scene.analysis.options.gravity = {0, -9.8 * load, 0};
       c.reference.reset();
       c.source.clear();
       c.guarded = quick && load <= 5;

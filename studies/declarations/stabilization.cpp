@@ -45,8 +45,8 @@ SceneDef cube(const Formulation& f, int n) {
   ground.name = "ground";
   ground.where.surfaces = {"z0"};
   s.dirichlet = {ground};
-  s.gravity = {0, 0, -9.81};
-  s.gravity_amount = Curve::ramp(1);
+  s.analysis.options.gravity = {0, 0, -9.81};
+  s.analysis.options.gravity_curve = Curve::ramp(1);
   s.analysis.steps = 1;
   return s;
 }

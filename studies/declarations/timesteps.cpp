@@ -14,8 +14,8 @@ constexpr double kDuration = 0.25;  // [s], a part of the first swing
 // A beam at rest that gravity takes hold of at once.
 SceneDef swing(const Formulation& f, int steps) {
   SceneDef scene = make_scene(problem("cantilever"), f, 1);
-  scene.gravity = {0, -9.8, 0};
-  scene.gravity_amount = Curve::constant(1);
+  scene.analysis.options.gravity = {0, -9.8, 0};
+  scene.analysis.options.gravity_curve = Curve::constant(1);
   scene.analysis.type = AnalysisType::dynamics;
   scene.analysis.duration = kDuration;
   scene.analysis.steps = steps;

@@ -34,10 +34,10 @@ SceneDef beam() {
   wall.name = "wall";
   wall.where.surfaces = {"x0"};
   s.dirichlet = {wall};
-  s.gravity = {0, 0, -9.81};
-  s.gravity_amount = Curve::ramp(1);
+  s.analysis.options.gravity = {0, 0, -9.81};
+  s.analysis.options.gravity_curve = Curve::ramp(1);
   s.analysis.steps = 1;
-  s.analysis.max_iterations = 200;
+  s.analysis.options.max_iterations = 200;
   s.probes = {{"tip", {}, {1, 0.1, 0.1}}};
   MetricDef tip;
   tip.name = "tip down";

@@ -69,6 +69,12 @@ TEST_CASE("unknown keys are errors with the nearest known one") {
   CHECK_THAT(error_with("bodies[0].element=tet20"), Contains("bodies[0].element") && Contains("\"tet10\""));
 }
 
+TEST_CASE("known keys are listed once each") {
+  const std::string message = error_with("probes[0].zzzzzzzzzz=1");
+  CHECK_THAT(message, Contains("; known here: name, body, point"));
+  CHECK_THAT(error_with("bodies[0].mesh.zzzzzzzzzz=1"), Contains("; known here: file, box, lattice, scale"));
+}
+
 TEST_CASE("wrong types, missing and contradicting values are named") {
   CHECK_THAT(error_with("analysis.steps=many"),
              Contains("analysis.steps: expected a whole number, found \"many\""));

@@ -50,6 +50,11 @@ TEST_CASE("a scene written and read again is written the same") {
   }
 }
 
+TEST_CASE("a quantity with a former name is written by the present one") {
+  const SceneDef scene = test::small_scene({R"(metrics=[{"name": "kept", "quantity": "volume_error"}])"});
+  CHECK_THAT(to_json(scene), Catch::Matchers::Contains("\"volume_row_residual\""));
+}
+
 TEST_CASE("program and file give the same bits after a step") {
   for (const char* name : {"tube", "cook_plane", "spine"}) {
     INFO(name);

@@ -28,8 +28,8 @@ SceneDef block() {
   s.dirichlet.clear();
   s.metrics.clear();
   s.probes.clear();
-  s.gravity = {0, 0, -1};
-  s.gravity_amount = Curve::constant(1);
+  s.analysis.options.gravity = {0, 0, -1};
+  s.analysis.options.gravity_curve = Curve::constant(1);
   s.analysis.type = AnalysisType::dynamics;
   s.analysis.duration = 0.1;
   s.analysis.steps = 1;

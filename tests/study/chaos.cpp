@@ -110,9 +110,9 @@ TEST_CASE("a few hundred scenes have everything that is on the shelf") {
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     const ChaosScene chaos = chaos_scene(seed, ChaosSize::small());
     for (const std::string& part : parts_of(chaos.scene)) parts.insert(part);
-    methods.insert(chaos.scene.analysis.method);
-    solvers.insert(chaos.scene.analysis.solver);
-    definiteness.insert(chaos.scene.analysis.definiteness);
+    methods.insert(chaos.scene.analysis.options.method);
+    solvers.insert(chaos.scene.analysis.options.solver);
+    definiteness.insert(chaos.scene.analysis.options.definiteness);
   }
   CHECK(methods.size() == 8);
   CHECK(solvers.size() == 6);  // all but the one under the GPL
@@ -321,7 +321,7 @@ TEST_CASE("the judge adds up what supports and loads exert") {
   push.where.surfaces = {"z1"};
   push.force = {0, 10, 0};
   s.forces = {push};
-  s.gravity = {0, 0, -0.01};
+  s.analysis.options.gravity = {0, 0, -0.01};
   for (const SupportTreatment treatment : {SupportTreatment::eliminated, SupportTreatment::multiplier}) {
     s.dirichlet[0].treatment = treatment;
     BuiltScene built = built_of(s);

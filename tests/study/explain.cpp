@@ -69,7 +69,7 @@ TEST_CASE("what is switched off is not in an explanation") {
   CHECK_FALSE(names(e, "element guard"));
   CHECK(names(e, "no volume rows"));
   CHECK(e.multipliers == 0);
-  scene.gravity = {0, -1, 0};
+  scene.analysis.options.gravity = {0, -1, 0};
   scene.analysis.type = AnalysisType::dynamics;
   CHECK(names(explained(scene), "inertia"));
   CHECK(names(explained(scene), "gravity"));

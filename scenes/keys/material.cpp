@@ -1,0 +1,102 @@
+// Materials of a body.
+#include "scenes/keys/parts.h"
+
+namespace isochor::keys {
+
+ISOCHOR_WORDS(MaterialLaw, ISOCHOR_WORD(MaterialLaw, neo_hookean),
+              ISOCHOR_WORD(MaterialLaw, neo_hookean_ogden), ISOCHOR_WORD(MaterialLaw, stable_neo_hookean),
+              ISOCHOR_WORD(MaterialLaw, stable_neo_hookean_barrier),
+              ISOCHOR_WORD(MaterialLaw, isochoric_neo_hookean), ISOCHOR_WORD(MaterialLaw, isochoric_extended),
+              ISOCHOR_WORD(MaterialLaw, corotated), ISOCHOR_WORD(MaterialLaw, fixed_corotated),
+              ISOCHOR_WORD(MaterialLaw, stvk), ISOCHOR_WORD(MaterialLaw, stvk_resistant),
+              ISOCHOR_WORD(MaterialLaw, linear), ISOCHOR_WORD(MaterialLaw, mooney_rivlin),
+              ISOCHOR_WORD(MaterialLaw, fung), ISOCHOR_WORD(MaterialLaw, arruda_boyce),
+              ISOCHOR_WORD(MaterialLaw, ogden));
+ISOCHOR_WORDS(BulkChoice, ISOCHOR_WORD(BulkChoice, consistent), ISOCHOR_WORD(BulkChoice, bulk_modulus));
+
+void describe(Visitor& io, OgdenTerm& t) {
+  const OgdenTerm d;
+  io.about("ogden_term",
+           "mu/alpha (sum of the principal stretches to the power alpha - 3); mu has the sign of alpha.");
+  io.number({"mu", "Pa", "modulus"}, t.mu, d.mu);
+  io.number({"alpha", "", "exponent"}, t.alpha, d.alpha);
+}
+
+void describe(Visitor& io, FiberFamily& f) {
+  const FiberFamily d;
+  io.about("fibers",
+           "A family of fibers that only pull, added to the material: k1/(2 k2) (exp(k2 E^2) - 1), see "
+           "[fibers](materials/fibers.md).");
+  io.vector({"direction", "", "of all of them, at rest"}, f.direction, d.direction);
+  io.points({"directions", "", "one a cell of the mesh, instead of `direction`"}, f.directions);
+  io.number(Key("k1", "Pa", "stiffness").above(0).must(), f.k1, d.k1);
+  io.number(Key("k2", "", "how soon they stiffen").least(0), f.k2, d.k2);
+  io.number(Key("dispersion", "", "0: all alike, 1/3: all directions").least(0), f.dispersion, d.dispersion);
+}
+
+void describe(Visitor& io, CompressionPenalty& p) {
+  const CompressionPenalty d;
+  io.about("compression_penalty",
+           "Added to every element: modulus (J - 1)^2 (beta (J - 1)^2 + 6) / 12, see [compression "
+           "penalty](materials/compression_penalty.md).");
+  io.number(Key("modulus", "Pa", "its stiffness").above(0).must(), p.modulus, d.modulus);
+  io.number(Key("beta", "", "how soon it stiffens").least(0), p.beta, d.beta);
+}
+
+void describe(Visitor& io, CellField& f) {
+  const CellField d;
+  io.about("cell_field",
+           "One number a cell of the body's mesh: a factor on its stiffness, or its Poisson's ratio.");
+  io.numbers({"values", "", "in place"}, f.values);
+  io.text({"file", "", "text, numbers divided by blanks or lines; instead of `values`"}, f.file, d.file);
+}
+
+namespace {
+
+void describe_own(Visitor& io, LawConstants& c) {
+  const LawConstants d;
+  io.number(Key("c1", "Pa", "of [mooney_rivlin](materials/mooney_rivlin.md)").least(0), c.c1, d.c1);
+  io.number(Key("c2", "Pa", "of mooney_rivlin").least(0), c.c2, d.c2);
+  io.number(Key("mu0", "Pa", "of [fung](materials/stiffening.md)").least(0), c.mu0, d.mu0);
+  io.number(Key("mu1", "", "of fung").least(0), c.mu1, d.mu1);
+  io.number(Key("gamma", "Pa", "of fung").least(0), c.gamma, d.gamma);
+  io.number(Key("beta1", "", "of [arruda_boyce](materials/stiffening.md)").least(0), c.beta1, d.beta1);
+  io.number(Key("beta2", "", "of arruda_boyce").least(0), c.beta2, d.beta2);
+  io.list({"terms", "", "of [ogden](materials/ogden.md)"}, c.terms);
+  io.number(Key("resistance", "Pa", "of [stvk_resistant](materials/stvk.md)").least(0), c.resistance,
+            d.resistance);
+  io.number({"threshold", "", "of [isochoric_extended](materials/isochoric.md)"}, c.threshold, d.threshold);
+}
+
+}  // namespace
+
+void describe(Visitor& io, MaterialDef& m) {
+  const MaterialDef d;
+  io.about("material",
+           "A law and its constants at small strain: `young` and `poisson`, or `mu` with `lambda` or `bulk`. "
+           "Constants of single laws are refused beside another law.");
+  io.text(Key("region", "", "of the mesh").absent("every region not named elsewhere"), m.region, d.region);
+  io.word({"law", "", "one of the [materials](materials/README.md)"}, m.law, d.law);
+  io.number(Key("young", "Pa", "Young's modulus").above(0).absent("by others"), m.constants.young,
+            d.constants.young);
+  io.number(Key("poisson", "", "Poisson's ratio; 0.5: incompressible").most(0.5), m.constants.poisson,
+            d.constants.poisson);
+  io.number(Key("mu", "Pa", "shear modulus").above(0).absent("by others"), m.constants.mu, d.constants.mu);
+  io.number_or_inf(Key("lambda", "Pa", "first Lamé parameter, may be `\"inf\"`").absent("by others"),
+                   m.constants.lambda, d.constants.lambda);
+  io.number_or_inf(Key("bulk", "Pa", "bulk modulus, may be `\"inf\"`").absent("by others"), m.constants.bulk,
+                   d.constants.bulk);
+  io.word({"bulk_choice", "", "what Poisson's ratio means for a [neo_hookean](materials/neo_hookean.md) law"},
+          m.constants.bulk_choice, d.constants.bulk_choice);
+  describe_own(io, m.own);
+  io.list({"fibers", "", "families of [fibers](materials/fibers.md)"}, m.fibers);
+  io.optional_object({"compression_penalty", "", "against single crushed elements"}, m.compression_penalty,
+                     m.compression_penalty.modulus != 0);
+  io.optional_object({"stiffness_field", "", "factors on the stiffness"}, m.stiffness_field,
+                     m.stiffness_field.given());
+  io.optional_object({"poisson_field", "", "Poisson's ratios, in place of `poisson`"}, m.poisson_field,
+                     m.poisson_field.given());
+  io.number(Key("density", "kg/m^3", "").above(0), m.density, d.density);
+}
+
+}  // namespace isochor::keys

@@ -1,0 +1,21 @@
+// Descriptions of the parts of a scene that are no effects.
+#pragma once
+
+#include "scenes/keys/keys.h"
+
+namespace isochor::keys {
+
+void describe(Visitor& io, MaterialDef& m);
+void describe(Visitor& io, BoxMeshDef& b);
+void describe(Visitor& io, LatticeMesh& l);
+void describe(Visitor& io, SceneBody& b);
+void describe(Visitor& io, AnalysisDef& a);
+void describe(Visitor& io, ProbeDef& p);
+void describe(Visitor& io, OrientationDef& o);
+void describe(Visitor& io, OutputDef& o);
+void describe(Visitor& io, MetricDef& m);
+// All of it: bodies and the analysis come first, since names of bodies and the meaning of plain numbers
+// depend on them.
+void describe(Visitor& io, SceneDef& s);
+
+}  // namespace isochor::keys
