@@ -356,7 +356,7 @@ class CavityInstance final : public EffectInstance {
     out.push_back({name_, "cavity", "pressure", "Pa", -lambda});
     out.push_back({name_, "cavity", "volume", "m^3", pool_->volume(c.state.x)});
     if (!network) return;
-    const auto memory = std::span<const double>(c.state.extra).subspan(at(c.system.first_memory(row_pool_)));
+    const auto memory = c.system.row_memory(row_pool_, std::span<const double>(c.state.extra));
     out.push_back({name_, "cavity", "content", "m^3", ChamberNetwork::held(memory, chamber)});
   }
 

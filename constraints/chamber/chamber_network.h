@@ -36,7 +36,7 @@ struct ChamberValve {
 // the integrals mu of phi, rescaled by (p_i - p_j) / (mu_i - mu_j) of the last accepted step, which makes it
 // proportional to the difference of pressures to the order of the time step. In this form the law has a
 // potential, U = -sum (m_i(start) + supplied) mu_i + h/2 sum G (mu_i - mu_j)^2, and a symmetric tangent.
-class ChamberNetwork final : public RowPool {
+class ChamberNetwork final : public RowPool, public LawRows, public RememberingRows {
  public:
   Index add_chamber(ChamberContent content, const EnclosedVolumePool& faces, double metric);
   void add_valve(ChamberValve valve);
@@ -47,7 +47,7 @@ class ChamberNetwork final : public RowPool {
   static double held(std::span<const double> memory, Index i) { return memory[3 * at(i)]; }
 
   std::string_view name() const override { return "chambers"; }
-  bool has_law() const override { return true; }
+  RowFacets facets() const override { return {.law = this, .remembering = this}; }
   double evaluate_law(const RowIncrement& increment, std::span<const double> lambda, std::span<double> strain,
                       std::span<double> tangent) const override;
   // A chamber keeps its content, its pressure and what it was supplied with so far.

@@ -16,7 +16,7 @@ struct ContactLayer {
   double modulus = 0;     // shear modulus of the softer body [Pa]
 };
 
-class ContactRows : public RowPool {
+class ContactRows : public RowPool, public LawRows {
  public:
   ContactRows(std::string name, double resolve_time) : name_(std::move(name)), resolve_time_(resolve_time) {}
   std::string_view name() const override { return name_; }
@@ -39,8 +39,11 @@ class ContactRows : public RowPool {
     upper.push_back(0.0);
   }
 
-  bool has_law() const override { return !knee.empty(); }
-  bool has_local_law() const override { return true; }
+  RowFacets facets() const override {
+    if (knee.empty()) return {};
+    return {.law = this};
+  }
+  bool local() const override { return true; }
   double evaluate_law(const RowIncrement& increment, std::span<const double> lambda, std::span<double> strain,
                       std::span<double> tangent) const override;
 

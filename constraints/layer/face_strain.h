@@ -26,8 +26,9 @@ class FaceStrainPool : public StencilPool {
                  std::span<const Vec3> rest);
 
   std::string_view name() const override { return name_; }
-  bool has_energy() const override { return gives_ == Gives::energy; }
-  int functions() const override { return gives_ == Gives::function ? 1 : 0; }
+  StencilShape shape() const override {
+    return {.energy = gives_ == Gives::energy, .functions = gives_ == Gives::function ? 1 : 0};
+  }
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
 
   double rest_area(Index face) const;  // [m^2]

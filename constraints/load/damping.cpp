@@ -22,8 +22,7 @@ class ViscousPool final : public StencilPool {
     finish_topology();
   }
   std::string_view name() const override { return name_; }
-  bool has_energy() const override { return true; }
-  int functions() const override { return 0; }
+  StencilShape shape() const override { return {.energy = true}; }
 
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override {
     for (Index s = request.begin; s < request.end; ++s) {
@@ -133,8 +132,7 @@ class DragPool final : public StencilPool {
     finish_topology();
   }
   std::string_view name() const override { return name_; }
-  bool has_energy() const override { return true; }
-  int functions() const override { return 0; }
+  StencilShape shape() const override { return {.energy = true}; }
 
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override {
     const double h = request.increment.h;

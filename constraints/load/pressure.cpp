@@ -47,7 +47,7 @@ void add_cross(Mat3& block, double s, const Vec3& w) {
 // integral of N_a n dA: c_a = 1/3 of the integral of N_a (x - origin) x dx along the rim (by Stokes'
 // theorem). It has no potential, so it is held where the iteration began: the function of an edge is c(held)
 // . x.
-class RimPool final : public StencilPool {
+class RimPool final : public StencilPool, public LaggedStencils {
  public:
   RimPool(std::string name, const Vec3& origin, bool couples)
       : name_(std::move(name)), origin_(origin), couples_(couples) {}
@@ -56,9 +56,8 @@ class RimPool final : public StencilPool {
   void finish() { finish_topology(); }
 
   std::string_view name() const override { return name_; }
-  bool has_energy() const override { return false; }
-  int functions() const override { return 1; }
-  bool has_lag() const override { return true; }
+  StencilShape shape() const override { return {.functions = 1}; }
+  StencilFacets facets() const override { return {.lagged = this}; }
   bool couples() const override { return couples_; }
 
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override {

@@ -60,8 +60,7 @@ class EnclosedVolumePool final : public StencilPool {
   void finish() { finish_topology(); }
 
   std::string_view name() const override { return name_; }
-  bool has_energy() const override { return false; }
-  int functions() const override { return 1; }
+  StencilShape shape() const override { return {.functions = 1}; }
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
 
   double volume(std::span<const Vec3> x) const;

@@ -24,8 +24,7 @@ class PointPool final : public StencilPool {
   void finish() { finish_topology(); }
 
   std::string_view name() const override { return name_; }
-  bool has_energy() const override { return false; }
-  int functions() const override { return 3; }
+  StencilShape shape() const override { return {.functions = 3}; }
   bool sees_rigid_motion() const override { return held_; }
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
 

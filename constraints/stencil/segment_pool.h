@@ -18,8 +18,7 @@ class SegmentPool final : public StencilPool {
   void finish() { finish_topology(); }
 
   std::string_view name() const override { return name_; }
-  bool has_energy() const override { return false; }
-  int functions() const override { return 1; }
+  StencilShape shape() const override { return {.functions = 1}; }
   bool sees_rigid_motion() const override { return anchored_; }
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
 

@@ -56,7 +56,7 @@ class BoneMotion final : public Motion {
 };
 
 // Rows of held points: d . (x - X) = d . u(t, X), by multipliers or by springs.
-class HeldRows final : public RowPool {
+class HeldRows final : public RowPool, public TurningRows {
  public:
   HeldRows(std::string name, std::shared_ptr<const Motion> motion)
       : name_(std::move(name)), motion_(std::move(motion)) {}
@@ -66,6 +66,7 @@ class HeldRows final : public RowPool {
       value[r] = dot(direction[r], motion_->displacement(t, point[r]));
     }
   }
+  RowFacets facets() const override { return {.turning = this}; }
   double turn(double t0, double t1) const override { return motion_->turn(t0, t1); }
   std::vector<Vec3> direction, point;  // of each row; rest positions [m]
 

@@ -28,8 +28,9 @@ class SolidPool final : public StencilPool {
   SolidPool(std::string name, SolidData data, std::shared_ptr<const Material> material, VolumeStrain strain);
 
   std::string_view name() const override { return name_; }
-  bool has_energy() const override { return material_ != nullptr; }
-  int functions() const override { return data_.functions; }
+  StencilShape shape() const override {
+    return {.energy = material_ != nullptr, .functions = data_.functions};
+  }
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
 
   const SolidData& data() const { return data_; }

@@ -253,7 +253,7 @@ Result<void> check_anchored(const SceneFacts& facts) {
 namespace {
 
 bool is_hard(const RowPool& pool) {
-  if (pool.law != RowLaw::compliant || pool.rows() == 0 || pool.has_law()) return false;
+  if (pool.law != RowLaw::compliant || pool.rows() == 0 || pool.facets().law) return false;
   if (!pool.lower.empty() || !pool.upper.empty()) return false;  // gives way where it would contradict
   // A compliance whose rows sum to zero (a stabilization) leaves the total hard.
   std::vector<double> sum(at(pool.rows()), 0), size(at(pool.rows()), 0);

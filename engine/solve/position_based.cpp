@@ -25,7 +25,7 @@ Index first_free(const ColorSet& taken) {
 std::string PositionBased::unsupported(const System& system) {
   for (const auto& law : system.laws()) {
     const RowPool& pool = *system.parts().row_pools[at(law.row_pool)];
-    if (pool.has_local_law()) continue;
+    if (pool.facets().law->local()) continue;
     return "rows \"" + std::string(pool.name()) + "\" have a law of their own in place of a compliance";
   }
   return {};

@@ -85,17 +85,14 @@ SaddlePoint::SaddlePoint(std::shared_ptr<const System> system, const Parallel& p
 double SaddlePoint::apply_laws(const SaddleProblem& p, std::span<const double> lambda, bool tangents) {
   const System& s = *system_;
   double energy = 0;
-  for (const auto& [index, entry] : s.laws()) {
-    const RowPool& pool = *s.parts().row_pools[at(index)];
-    const auto first = at(s.first_row(index)), rows = at(pool.rows());
-    const RowIncrement increment{
-        p.t0, p.t1, p.memory.subspan(at(s.first_memory(index)), static_cast<std::size_t>(pool.memory()))};
-    const auto l = lambda.subspan(first, rows);
+  for (const auto& law : s.laws()) {
+    const RowPool& pool = *s.parts().row_pools[at(law.row_pool)];
+    const auto first = at(s.first_row(law.row_pool)), rows = at(pool.rows());
     const auto strain = std::span(strain_).subspan(first, rows);
-    energy -= pool.evaluate_law(
-        increment, l, strain,
-        tangents ? std::span(tangent_).subspan(entry, pool.compliance.size()) : std::span<double>());
-    for (std::size_t r = 0; r < rows; ++r) energy += l[r] * strain[r];
+    energy -= s.evaluate_law(law, p.t0, p.t1, p.memory, lambda, strain,
+                             tangents ? std::span(tangent_).subspan(law.first_entry, pool.compliance.size())
+                                      : std::span<double>());
+    for (std::size_t r = 0; r < rows; ++r) energy += lambda[first + r] * strain[r];
   }
   return energy;
 }

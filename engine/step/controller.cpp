@@ -40,23 +40,24 @@ Controller::Controller(const StepContext& context, Amounts& amounts, Interrupt& 
 double Controller::largest_turn(double t0, double t1) const {
   double largest = 0;
   for (const auto& p : context_.system().parts().prescribers) largest = std::max(largest, p->turn(t0, t1));
-  for (const auto& p : context_.system().parts().row_pools) largest = std::max(largest, p->turn(t0, t1));
+  for (const auto& rows : context_.system().facets().turning)
+    largest = std::max(largest, rows.facet->turn(t0, t1));
   return largest;
 }
 
-// As StencilPool::entry(). A node that moves as it did and is then not run over does not count.
+// As BarrierStencils::entry(). A node that moves as it did and is then not run over does not count.
 double Controller::largest_entry(double t0, double t1) {
   const State& state = context_.state;
   double largest = 0;
-  for (const auto& p : context_.system().parts().stencil_pools) {
-    const double still = p->entry(t0, t1, state.x, state.x);
+  for (const auto& [pool, barrier] : context_.system().facets().barriers) {
+    const double still = barrier->entry(t0, t1, state.x, state.x);
     if (still <= largest) continue;
     if (ahead_.empty()) {
       largest = still;
       continue;
     }
     for (std::size_t i = 0; i < ahead_.size(); ++i) ahead_[i] = state.x[i] + (t1 - t0) * state.v[i];
-    largest = std::max(largest, std::min(still, p->entry(t0, t1, state.x, ahead_)));
+    largest = std::max(largest, std::min(still, barrier->entry(t0, t1, state.x, ahead_)));
   }
   return largest;
 }

@@ -50,7 +50,8 @@ bool EndCheck::moved_from_outside(const SaddleProblem& problem) {
   const SystemParts& parts = system.parts();
   const bool without_potential =
       std::any_of(parts.row_pools.begin(), parts.row_pools.end(), [&](const auto& rows) {
-        return rows->law == RowLaw::prescribed && parts.stencil_pools[at(rows->stencil_pool)]->has_lag();
+        return rows->law == RowLaw::prescribed &&
+               parts.stencil_pools[at(rows->stencil_pool)]->facets().lagged;
       });
   if (without_potential) return true;
   if (!system.has_bounds() && !system.has_barrier()) return false;

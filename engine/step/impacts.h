@@ -17,7 +17,7 @@ class Impacts {
 
  private:
   StepContext context_;
-  std::vector<double> row_work_;  // two numbers a row; empty: no row looks back
+  std::vector<double> row_work_;  // two numbers a row; empty: no rows have impacts
   std::vector<double> no_past_;
 };
 

@@ -55,11 +55,12 @@ std::string not_met_in_the_middle(const SystemParts& parts, const TimeScheme& sc
   if (scheme.evaluated_at() == 1) return {};
   std::string_view what;
   for (const auto& pool : parts.row_pools) {
-    if (pool->rows() > 0 && (pool->has_law() || !pool->lower.empty() || !pool->upper.empty()))
+    if (pool->rows() > 0 && (pool->facets().law || !pool->lower.empty() || !pool->upper.empty()))
       what = pool->name();
   }
   for (const auto& pool : parts.stencil_pools) {
-    if (pool->stencils() > 0 && (pool->has_barrier() || pool->follows())) what = pool->name();
+    const StencilFacets f = pool->facets();
+    if (pool->stencils() > 0 && (f.barrier || f.renewed)) what = pool->name();
   }
   if (what.empty()) return {};
   return "world: \"" + std::string(what) + "\" must be met at the end of a step, and " +
@@ -69,8 +70,10 @@ std::string not_met_in_the_middle(const SystemParts& parts, const TimeScheme& sc
 
 // Why a coupled pool cannot be solved as asked; empty when it can.
 std::string no_coupling(const SystemParts& parts, const WorldOptions& options) {
-  const auto pool = std::find_if(parts.stencil_pools.begin(), parts.stencil_pools.end(),
-                                 [](const auto& p) { return p->has_lag() && p->couples(); });
+  const auto pool = std::find_if(parts.stencil_pools.begin(), parts.stencil_pools.end(), [](const auto& p) {
+    const LaggedStencils* lagged = p->facets().lagged;
+    return lagged && lagged->couples();
+  });
   if (pool == parts.stencil_pools.end()) return {};
   const std::string who = "world: \"" + std::string((*pool)->name()) + "\" is coupled, ";
   if (options.scheme->follows_paths())
@@ -96,12 +99,12 @@ std::string no_coupling(const SystemParts& parts, const WorldOptions& options) {
 std::string not_this_scheme(const SystemParts& parts, const WorldOptions& options) {
   const bool follows = options.scheme->follows_paths();
   for (const auto& pool : parts.stencil_pools) {
-    if (!pool->follows() || !follows) continue;
+    if (!follows || !pool->facets().renewed) continue;
     return "world: \"" + std::string(pool->name()) +
            "\" changes with what is close, which continuation() does not follow; use statics()";
   }
   for (const auto& pool : parts.row_pools) {
-    if (!pool->looks_back()) continue;
+    if (!pool->facets().impact) continue;
     const std::string who = "world: \"" + std::string(pool->name()) + "\" makes velocities jump, ";
     if (!options.scheme->has_inertia())
       return who + "and " + std::string(options.scheme->name()) + " has none; use a scheme of dynamics";

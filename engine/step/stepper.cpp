@@ -282,23 +282,20 @@ void Stepper::take_memory(const StencilIncrement& increment) {
   if (system.memory() == 0) return;
   auto& extra = context_.state.extra;
   std::copy_n(extra.begin(), memory_before_.size(), memory_before_.begin());
-  for (Index p = 0; p < static_cast<Index>(system.parts().row_pools.size()); ++p) {
-    const RowPool& pool = *system.parts().row_pools[at(p)];
-    if (pool.memory() == 0) continue;
-    const auto first = at(system.first_memory(p)), count = static_cast<std::size_t>(pool.memory());
-    pool.accept({increment.t0, increment.t1, std::span<const double>(memory_before_).subspan(first, count)},
-                std::span<const double>(trial_.lambda).subspan(at(system.first_row(p)), at(pool.rows())),
-                std::span(extra).subspan(first, count));
+  const std::span<const double> before = memory_before_;
+  const std::span<double> after = extra;
+  for (const auto& rows : system.facets().remembering_rows) {
+    const auto first = at(system.first_row(rows.pool));
+    const auto count = at(system.parts().row_pools[at(rows.pool)]->rows());
+    rows.facet->accept({increment.t0, increment.t1, rows.in(before)},
+                       std::span<const double>(trial_.lambda).subspan(first, count), rows.in(after));
   }
   const Assembly& assembly = context_.methods.chosen().assembly();
-  for (Index p = 0; p < static_cast<Index>(system.parts().stencil_pools.size()); ++p) {
-    const StencilPool& pool = *system.parts().stencil_pools[at(p)];
-    if (pool.memory() == 0) continue;
-    const auto first = at(system.first_stencil_memory(p)), count = static_cast<std::size_t>(pool.memory());
-    StencilRequest request = assembly.request(p, Want::value, trial_.x);
+  for (const auto& stencils : system.facets().remembering) {
+    StencilRequest request = assembly.request(stencils.pool, Want::value, trial_.x);
     request.increment = increment;
-    request.memory = std::span<const double>(memory_before_).subspan(first, count);
-    pool.accept(request, std::span(extra).subspan(first, count));
+    request.memory = stencils.in(before);
+    stencils.facet->accept(request, stencils.in(after));
   }
 }
 

@@ -5,28 +5,24 @@
 namespace isochor {
 
 Surroundings::Surroundings(const StepContext& context) : context_(context) {
-  if (context_.system().has_followers()) first_stencils_ = context_.system().parts().stencil_pools;
+  if (context_.system().renews_stencils()) first_stencils_ = context_.system().parts().stencil_pools;
 }
 
 Surroundings::Found Surroundings::renew(std::span<const Vec3> x, Around around) {
   Found found;
   const System& system = context_.system();
-  if (!system.has_followers()) return found;
+  if (!system.renews_stencils()) return found;
   const bool solved = around == Around::solution;
   auto pools = system.parts().stencil_pools;
-  for (std::size_t p = 0; p < pools.size(); ++p) {
-    if (!pools[p]->follows()) continue;
-    FollowRequest request{{}, context_.state.x, x, solved, &context_.parallel};
-    if (!solved) {
-      request.memory = context_.pool_memory().subspan(at(system.first_stencil_memory(static_cast<Index>(p))),
-                                                      static_cast<std::size_t>(pools[p]->memory()));
-    }
-    FollowAnswer answer = pools[p]->followed(request);
+  for (const auto& [p, stencils] : system.facets().renewed) {
+    RenewalRequest request{{}, context_.state.x, x, solved, &context_.parallel};
+    if (!solved) request.memory = system.stencil_memory(p, context_.pool_memory());
+    Renewal answer = stencils->renewed(request);
     found.crossed += answer.crossed;
     found.passing += answer.passing;
     if (!answer.pool) continue;
     found.changed = true;
-    pools[p] = std::move(answer.pool);
+    pools[at(p)] = std::move(answer.pool);
   }
   if (!found.changed) return found;
   if (auto r = context_.methods.replace_stencils(std::move(pools)); !r) found.error = r.error();
@@ -48,19 +44,18 @@ void Surroundings::keep(std::vector<std::shared_ptr<const StencilPool>> pools, c
 
 Result<void> Surroundings::restore(std::span<const double> memory) {
   const System& system = context_.system();
-  if (!system.has_followers()) return {};
+  if (!system.renews_stencils()) return {};
   const auto present = system.parts().stencil_pools;
   auto pools = present;
   bool changed = false;
-  for (std::size_t p = 0; p < pools.size(); ++p) {
-    if (!pools[p]->follows()) continue;
-    const auto kept = memory.subspan(at(system.first_stencil_memory(static_cast<Index>(p))),
-                                     static_cast<std::size_t>(pools[p]->memory()));
+  for (const auto& [index, stencils] : system.facets().renewed) {
+    const auto kept = system.stencil_memory(index, memory);
+    const auto p = at(index);
     // Zeros: no step has been accepted, and the stencils are those that the scene began with.
     if (std::all_of(kept.begin(), kept.end(), [](double v) { return v == 0; })) {
       pools[p] = first_stencils_[p];
     } else {
-      auto restored = pools[p]->restored(kept);
+      auto restored = stencils->restored(kept);
       if (!restored) return Error{restored.error()};
       pools[p] = std::move(restored).value();
     }
@@ -75,13 +70,9 @@ Result<void> Surroundings::restore(std::span<const double> memory) {
 }
 
 Index Surroundings::passing(const StencilIncrement& increment, std::span<Vec3> x, Passing passing) const {
-  const System& system = context_.system();
-  if (!system.has_barrier()) return 0;
   Index count = 0;
-  for (const auto& pool : system.parts().stencil_pools) {
-    if (!pool->has_barrier()) continue;
-    count += pool->passing(increment, x, passing == Passing::stop ? x : std::span<Vec3>());
-  }
+  for (const auto& [pool, barrier] : context_.system().facets().barriers)
+    count += barrier->passing(increment, x, passing == Passing::stop ? x : std::span<Vec3>());
   return count;
 }
 

@@ -13,7 +13,7 @@ class Surroundings {
 
   struct Found {
     bool changed = false;
-    Index crossed = 0, passing = 0;  // as in FollowAnswer
+    Index crossed = 0, passing = 0;  // as in Renewal
     std::string error;
   };
   // Renews stencils around x: a solution with the present ones (`solved`), or a guess before one.

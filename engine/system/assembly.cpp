@@ -90,10 +90,8 @@ StencilRequest Assembly::request(Index p, Want want, std::span<const Vec3> x) co
                    increment_,
                    {},
                    {}};
-  if (lagged_ && pool.has_lag()) q.lag = {lag_x_, std::span(lag_multiplier_).subspan(first, functions)};
-  if (pool.memory() > 0 && !memory_.empty()) {
-    q.memory = memory_.subspan(at(system_->first_stencil_memory(p)), static_cast<std::size_t>(pool.memory()));
-  }
+  if (lagged_ && pool.facets().lagged) q.lag = {lag_x_, std::span(lag_multiplier_).subspan(first, functions)};
+  if (!memory_.empty()) q.memory = system_->stencil_memory(p, memory_);
   return q;
 }
 
@@ -105,10 +103,8 @@ void Assembly::evaluate(Want want, Definiteness definiteness, std::span<const Ve
 }
 
 void Assembly::evaluate_lagging(Want want, std::span<const Vec3> x) {
-  const auto& pools = system_->parts().stencil_pools;
-  for (std::size_t p = 0; p < pools.size(); ++p) {
-    if (pools[p]->has_lag()) evaluate_pool(p, want, Definiteness::exact, x);
-  }
+  for (const auto& lagged : system_->facets().lagged)
+    evaluate_pool(at(lagged.pool), want, Definiteness::exact, x);
 }
 
 void Assembly::evaluate_pool(std::size_t p, Want want, Definiteness definiteness, std::span<const Vec3> x) {

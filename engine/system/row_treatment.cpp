@@ -46,7 +46,9 @@ RowTreatment RowTreatments::choose(const RowPool& pool) const {
 }
 
 bool RowTreatments::couples(const RowPool& pool) const {
-  return system_.couples() && system_.parts_.stencil_pools[at(pool.stencil_pool)]->couples();
+  if (!system_.couples()) return false;
+  const LaggedStencils* lagged = system_.parts_.stencil_pools[at(pool.stencil_pool)]->facets().lagged;
+  return lagged && lagged->couples();
 }
 
 // Rows over whole bodies: bordered where the matrix is that of the stiffness.
@@ -162,7 +164,7 @@ std::vector<Index>& RowTreatments::list_of(RowTreatment treatment) {
 }
 
 Result<void> RowTreatments::check_condensed(const RowPool& pool, const std::string& who) {
-  if (pool.has_law() && !pool.has_local_law()) {
+  if (const LawRows* law = pool.facets().law; law && !law->local()) {
     return Error{who + "a row with a law of its own is not condensed; use treatment saddle or bordered"};
   }
   std::vector<double> diagonal(at(pool.rows()), 0);

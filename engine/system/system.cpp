@@ -71,6 +71,7 @@ class SystemCompiler {
  public:
   explicit SystemCompiler(SystemParts parts) : s_(std::make_shared<System>()) {
     s_->parts_ = std::move(parts);
+    s_->facets_ = SystemFacets(s_->parts_.stencil_pools, s_->parts_.row_pools);
   }
 
   Result<std::shared_ptr<const System>> run() {
@@ -83,7 +84,7 @@ class SystemCompiler {
     gather_blocks();
     gather_jacobian();
     collect_compliance();
-    collect_bounds_and_memory();
+    collect_bounds();
     if (auto r = RowTreatments(*s_).sort(); !r) return Error{r.error()};
     build_kkt();
     locate_entries();
@@ -321,9 +322,10 @@ class SystemCompiler {
       if (pool.law != RowLaw::compliant) continue;
       const Index base = s_->first_row_[p];
       // The tangent of a law takes the place of constant values.
-      if (pool.has_law()) s_->laws_.push_back({static_cast<Index>(p), s_->compliance_.size()});
+      const LawRows* law = pool.facets().law;
+      if (law) s_->laws_.push_back({static_cast<Index>(p), s_->compliance_.size()});
       for (const ComplianceEntry& e : pool.compliance) {
-        s_->compliance_.push_back({base + e.row, base + e.col, pool.has_law() ? 0.0 : e.value});
+        s_->compliance_.push_back({base + e.row, base + e.col, law ? 0.0 : e.value});
         if (e.row == e.col) diagonal[at(base + e.row)] = true;
       }
     }
@@ -360,12 +362,10 @@ class SystemCompiler {
     }
   }
 
-  void collect_bounds_and_memory() {
+  void collect_bounds() {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     for (std::size_t p = 0; p < s_->parts_.row_pools.size(); ++p) {
       const RowPool& pool = *s_->parts_.row_pools[p];
-      s_->first_memory_.push_back(s_->memory_);
-      s_->memory_ += pool.memory();
       if (pool.law != RowLaw::compliant || (pool.lower.empty() && pool.upper.empty())) continue;
       s_->row_lower_.resize(at(s_->rows_), -infinity);
       s_->row_upper_.resize(at(s_->rows_), infinity);
@@ -375,14 +375,6 @@ class SystemCompiler {
       if (!std::isfinite(pool.largest_overshoot)) continue;
       s_->row_overshoot_.resize(at(s_->rows_), infinity);
       std::fill_n(s_->row_overshoot_.begin() + first, pool.rows(), pool.largest_overshoot);
-    }
-    for (const auto& pool : s_->parts_.stencil_pools) {
-      s_->first_stencil_memory_.push_back(s_->memory_);
-      s_->memory_ += pool->memory();
-      s_->has_lag_ = s_->has_lag_ || pool->has_lag();
-      s_->couples_ = s_->couples_ || (pool->has_lag() && pool->couples());
-      s_->has_barrier_ = s_->has_barrier_ || pool->has_barrier();
-      s_->has_followers_ = s_->has_followers_ || pool->follows();
     }
   }
 
@@ -533,7 +525,7 @@ class SystemCompiler {
   }
 
   void find_ordering_base() {
-    if (!s_->has_followers_) return;
+    if (!s_->renews_stencils()) return;
     if (!s_->parts_.ordering_base) {
       s_->parts_.ordering_base = std::make_shared<OrderingBase>();
       s_->parts_.ordering_base->pattern = s_->kkt_;
@@ -553,6 +545,20 @@ class SystemCompiler {
 
   std::shared_ptr<System> s_;
 };
+
+double System::evaluate_law(const LawPlace& place, double t0, double t1, std::span<const double> memory,
+                            std::span<const double> lambda, std::span<double> strain,
+                            std::span<double> tangent) const {
+  const auto first = at(first_row(place.row_pool)), rows = at(parts_.row_pools[at(place.row_pool)]->rows());
+  const LawRows& law = *parts_.row_pools[at(place.row_pool)]->facets().law;
+  return law.evaluate_law({t0, t1, row_memory(place.row_pool, memory)}, lambda.subspan(first, rows), strain,
+                          tangent);
+}
+
+void System::start_memory(std::span<double> memory) const {
+  std::fill(memory.begin(), memory.end(), 0.0);
+  for (const auto& rows : facets_.remembering_rows) rows.facet->start(rows.in(memory));
+}
 
 Result<std::shared_ptr<const System>> System::compile(SystemParts parts) {
   return SystemCompiler(std::move(parts)).run();

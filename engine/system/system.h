@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/solvers/linear_solver.h"
-#include "engine/system/pool.h"
+#include "engine/system/system_facets.h"
 
 namespace isochor {
 
@@ -19,7 +19,7 @@ struct SystemParts {
   // How rows are treated whose pools leave it to us; where it does not fit, the closest that does.
   RowTreatment treatment = RowTreatment::automatic;
   bool border_wide_rows = true;  // rather than dual, where `treatment` is dual
-  // Of a system whose stencils follow what is close: made with the first one, for those that replace it.
+  // Of a system whose stencils are renewed: made with the first one, for those that replace it.
   std::shared_ptr<OrderingBase> ordering_base;
 };
 
@@ -114,21 +114,35 @@ class System {
     std::size_t first_entry = 0;
   };
   std::span<const LawPlace> laws() const { return laws_; }
+  // LawRows::evaluate_law() of one of them, from the multipliers of all compliant rows and the memory of all
+  // pools; `strain` and `tangent` are those of the pool.
+  double evaluate_law(const LawPlace& place, double t0, double t1, std::span<const double> memory,
+                      std::span<const double> lambda, std::span<double> strain,
+                      std::span<double> tangent) const;
   // Bounds on the multipliers of all compliant rows; empty when no row has any.
   std::span<const double> row_lower() const { return row_lower_; }
   std::span<const double> row_upper() const { return row_upper_; }
   bool has_bounds() const { return !row_lower_.empty(); }
   // RowPool::largest_overshoot of all compliant rows; empty when all are infinite.
   std::span<const double> row_overshoot() const { return row_overshoot_; }
-  // Numbers that row and stencil pools keep between steps: all, and where those of a pool begin.
-  Index memory() const { return memory_; }
-  Index first_memory(Index row_pool) const { return first_memory_[at(row_pool)]; }
-  Index first_stencil_memory(Index stencil_pool) const { return first_stencil_memory_[at(stencil_pool)]; }
+  const SystemFacets& facets() const { return facets_; }
+  // Numbers that row and stencil pools keep between steps: all, and those of a pool among them.
+  Index memory() const { return static_cast<Index>(facets_.memory); }
+  template <class T>
+  std::span<T> row_memory(Index row_pool, std::span<T> all) const {
+    return part_of(facets_.remembering_rows, row_pool, all);
+  }
+  template <class T>
+  std::span<T> stencil_memory(Index stencil_pool, std::span<T> all) const {
+    return part_of(facets_.remembering, stencil_pool, all);
+  }
+  // As a scene begins.
+  void start_memory(std::span<double> memory) const;
   // Some stencils hold on to positions and multipliers within an iteration; nodes could pass through some.
-  bool has_lag() const { return has_lag_; }
-  bool couples() const { return couples_; }  // some of these want unsymmetric matrices
-  bool has_barrier() const { return has_barrier_; }
-  bool has_followers() const { return has_followers_; }  // stencils that change with what is close
+  bool has_lag() const { return !facets_.lagged.empty(); }
+  bool couples() const { return facets_.coupled; }
+  bool has_barrier() const { return !facets_.barriers.empty(); }
+  bool renews_stencils() const { return !facets_.renewed.empty(); }
   std::span<const double> row_metric() const { return row_metric_; }
   std::span<const double> row_measure() const { return row_measure_; }
   std::span<const std::int64_t> diagonal_place() const { return diagonal_place_; }
@@ -138,6 +152,14 @@ class System {
   bool has_prescribers() const { return !parts_.prescribers.empty(); }
 
  private:
+  template <class List, class T>
+  static std::span<T> part_of(const List& remembering, Index pool, std::span<T> all) {
+    for (const auto& r : remembering) {
+      if (r.pool == pool) return r.in(all);
+    }
+    return {};
+  }
+
   friend class SystemCompiler;
   friend class RowTreatments;
   SystemParts parts_;
@@ -160,9 +182,7 @@ class System {
   std::vector<std::size_t> row_jacobian_begin_, diagonal_compliance_, dual_compliance_;
   std::vector<std::int64_t> filled_place_;
   std::vector<BorderCompliance> border_compliance_;
-  Index memory_ = 0;
-  std::vector<Index> first_memory_, first_stencil_memory_;
-  bool has_lag_ = false, couples_ = false, has_barrier_ = false, has_followers_ = false;
+  SystemFacets facets_;
 };
 
 }  // namespace isochor

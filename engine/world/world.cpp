@@ -172,12 +172,7 @@ void World::Impl::begin_state() {
   // Last increment's length and suggestion for the next, then velocities before it.
   layout.error = options.time_error > 0 && options.scheme->has_inertia() ? 2 + 3 * n : 0;
   state.extra.assign(layout.size(), 0.0);
-  for (Index p = 0; p < static_cast<Index>(parts.row_pools.size()); ++p) {
-    const RowPool& pool = *parts.row_pools[at(p)];
-    if (pool.memory() == 0) continue;
-    pool.start(std::span(state.extra)
-                   .subspan(at(system().first_memory(p)), static_cast<std::size_t>(pool.memory())));
-  }
+  system().start_memory(std::span(state.extra).first(layout.pools));
   data.emplace(system(), options, gravity_mass());
   controller.emplace(StepContext{options, builder.bodies(), parallel, methods, *data, state, layout}, amounts,
                      interrupt);

@@ -94,14 +94,10 @@ double World::Impl::law_energy() {
   assembly().row_values(phi);
   double energy = 0;
   for (const auto& law : system().laws()) {
-    const RowPool& pool = *system().parts().row_pools[at(law.row_pool)];
-    const auto first = at(system().first_row(law.row_pool)), rows = at(pool.rows());
-    const auto memory =
-        std::span<const double>(state.extra)
-            .subspan(at(system().first_memory(law.row_pool)), static_cast<std::size_t>(pool.memory()));
+    const auto first = at(system().first_row(law.row_pool));
+    const auto rows = at(system().parts().row_pools[at(law.row_pool)]->rows());
     std::vector<double> strain(rows);
-    energy -= pool.evaluate_law({state.t, state.t, memory},
-                                std::span<const double>(state.lambda).subspan(first, rows), strain, {});
+    energy -= system().evaluate_law(law, state.t, state.t, state.extra, state.lambda, strain, {});
     for (std::size_t r = first; r < first + rows; ++r)
       energy += state.lambda[r] * (phi[r] - data->target()[r]);
   }

@@ -62,14 +62,10 @@ std::vector<double> World::Impl::row_residuals() {
     if (e.row != e.col) theta[at(e.col)] -= e.value * state.lambda[at(e.row)];
   }
   for (const auto& law : system().laws()) {
-    const RowPool& pool = *system().parts().row_pools[at(law.row_pool)];
-    const auto first = at(system().first_row(law.row_pool)), rows = at(pool.rows());
+    const auto first = at(system().first_row(law.row_pool));
+    const auto rows = at(system().parts().row_pools[at(law.row_pool)]->rows());
     std::vector<double> strain(rows);
-    const auto memory =
-        std::span<const double>(state.extra)
-            .subspan(at(system().first_memory(law.row_pool)), static_cast<std::size_t>(pool.memory()));
-    pool.evaluate_law({state.t, state.t, memory}, std::span<const double>(state.lambda).subspan(first, rows),
-                      strain, {});
+    system().evaluate_law(law, state.t, state.t, state.extra, state.lambda, strain, {});
     for (std::size_t r = 0; r < rows; ++r) theta[first + r] -= strain[r];
   }
   for (std::size_t r = 0; system().has_bounds() && r < theta.size(); ++r) {

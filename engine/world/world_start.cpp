@@ -58,9 +58,9 @@ Result<void> World::set_positions(BodyId body, std::span<const Vec3> positions) 
   std::fill_n(w.state.v.begin() + static_cast<std::ptrdiff_t>(first), positions.size(), Vec3{});
   std::fill(w.state.lambda.begin(), w.state.lambda.end(), 0.0);
   // Stencils and the scheme have no past either.
-  for (Index p = 0; p < static_cast<Index>(w.system().parts().stencil_pools.size()); ++p) {
-    const auto kept = w.state.extra.begin() + w.system().first_stencil_memory(p);
-    std::fill_n(kept, w.system().parts().stencil_pools[at(p)]->memory(), 0.0);
+  for (const auto& stencils : w.system().facets().remembering) {
+    const auto kept = stencils.in(std::span(w.state.extra));
+    std::fill(kept.begin(), kept.end(), 0.0);
   }
   const auto past = w.layout.of_scheme(w.state.extra);
   std::fill(past.begin(), past.end(), 0.0);

@@ -14,20 +14,26 @@ namespace {
 
 struct LawProbe {
   const RowPool& pool;
+  const LawRows& law;
+  const RememberingRows* remembering;
   std::vector<double> memory, lambda;
 
-  explicit LawProbe(const RowPool& rows) : pool(rows), memory(static_cast<std::size_t>(rows.memory())) {
-    pool.start(memory);
+  explicit LawProbe(const RowPool& rows)
+      : pool(rows), law(*rows.facets().law), remembering(rows.facets().remembering) {
+    if (remembering) {
+      memory.resize(static_cast<std::size_t>(remembering->memory()));
+      remembering->start(memory);
+    }
     for (Index r = 0; r < pool.rows(); ++r) lambda.push_back(2e4 * std::sin(1.0 + 2.7 * r));
     // Take it away from its start.
     std::vector<double> before = memory;
-    pool.accept({0, 0.3, before}, lambda, memory);
+    if (remembering) remembering->accept({0, 0.3, before}, lambda, memory);
     for (double& l : lambda) l = -0.7 * l + 3e3;
   }
   double at_multipliers(std::span<const double> l, std::vector<double>& strain,
                         std::span<double> tangent = {}) const {
     strain.assign(l.size(), std::nan(""));
-    return pool.evaluate_law({0.3, 0.5, memory}, l, strain, tangent);
+    return law.evaluate_law({0.3, 0.5, memory}, l, strain, tangent);
   }
 };
 
@@ -37,7 +43,7 @@ void for_every_law(const Check& check) {
   for (const test::SceneCase& c : test::scene_cases()) {
     const test::SceneProbe scene(c);
     for (const auto& pool : scene.system().parts().row_pools) {
-      if (!pool->has_law()) continue;
+      if (!pool->facets().law) continue;
       INFO(c.name << ", rows " << pool->name());
       check(LawProbe(*pool));
       ++found;
@@ -101,8 +107,8 @@ TEST_CASE("evaluating a law allocates nothing") {
     const RowIncrement increment{0.3, 0.5, probe.memory};
     auto memory = probe.memory;
     const test::AllocationCount allocations;
-    const double potential = probe.pool.evaluate_law(increment, probe.lambda, strain, tangent);
-    probe.pool.accept(increment, probe.lambda, memory);
+    const double potential = probe.law.evaluate_law(increment, probe.lambda, strain, tangent);
+    if (probe.remembering) probe.remembering->accept(increment, probe.lambda, memory);
     const long count = allocations.count();
     CHECK(std::isfinite(potential));
     CHECK(count == 0);

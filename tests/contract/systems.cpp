@@ -135,14 +135,13 @@ TEST_CASE("the solution of a linear system solves it whatever the treatment of i
     values.stiffness = stiffness;
     // Tangents of rows with a law, at no multiplier and as the scene starts.
     std::vector<double> tangent(s.compliance().size(), 0.0), memory(at(s.memory()), 0.0);
-    for (const auto& [index, entry] : s.laws()) {
-      const RowPool& pool = *s.parts().row_pools[at(index)];
-      const auto kept =
-          std::span(memory).subspan(at(s.first_memory(index)), static_cast<std::size_t>(pool.memory()));
-      if (pool.memory() > 0) pool.start(kept);
-      std::vector<double> strain(at(pool.rows())), none(at(pool.rows()), 0.0);
-      pool.evaluate_law({0, 0.1, kept}, none, strain,
-                        std::span(tangent).subspan(entry, pool.compliance.size()));
+    s.start_memory(memory);
+    const std::vector<double> none(at(s.rows()), 0.0);
+    for (const auto& law : s.laws()) {
+      const RowPool& pool = *s.parts().row_pools[at(law.row_pool)];
+      std::vector<double> strain(at(pool.rows()));
+      s.evaluate_law(law, 0, 0.1, memory, none, strain,
+                     std::span(tangent).subspan(law.first_entry, pool.compliance.size()));
     }
     values.tangent = tangent;
     StageSeconds seconds;

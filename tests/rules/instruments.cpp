@@ -81,8 +81,7 @@ class EmptyPool final : public StencilPool {
  public:
   EmptyPool() { finish_topology(); }
   std::string_view name() const override { return "empty"; }
-  bool has_energy() const override { return true; }
-  int functions() const override { return 1; }
+  StencilShape shape() const override { return {.energy = true, .functions = 1}; }
   void evaluate(const StencilRequest&, const StencilSlots&) const override { FAIL("nothing to evaluate"); }
 };
 

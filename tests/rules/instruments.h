@@ -53,10 +53,7 @@ class CountingPool final : public isochor::StencilPool {
     finish_topology();
   }
   std::string_view name() const override { return pool_->name(); }
-  bool has_energy() const override { return pool_->has_energy(); }
-  int functions() const override { return pool_->functions(); }
-  bool has_hessian() const override { return pool_->has_hessian(); }
-  isochor::Index grain() const override { return pool_->grain(); }
+  isochor::StencilShape shape() const override { return pool_->shape(); }
   void evaluate(const isochor::StencilRequest& request, const isochor::StencilSlots& slots) const override;
 
  private:

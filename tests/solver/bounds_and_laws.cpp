@@ -18,8 +18,7 @@ class HeightPool final : public StencilPool {
     finish_topology();
   }
   std::string_view name() const override { return "height"; }
-  bool has_energy() const override { return false; }
-  int functions() const override { return 1; }
+  StencilShape shape() const override { return {.functions = 1}; }
   bool sees_rigid_motion() const override { return true; }
   void evaluate(const StencilRequest& q, const StencilSlots& slots) const override {
     for (Index s = q.begin; s < q.end; ++s) {
@@ -37,10 +36,13 @@ class HeightPool final : public StencilPool {
 
 constexpr double kScale = 1e-3, kForce = 0.8;  // of the law: c(lambda) = kScale sinh(lambda / kForce)
 
-struct HeightRows final : RowPool {
+struct HeightRows final : RowPool, LawRows, RememberingRows {
   bool with_law = false;
   std::string_view name() const override { return "height"; }
-  bool has_law() const override { return with_law; }
+  RowFacets facets() const override {
+    if (!with_law) return {};
+    return {.law = this, .remembering = this};
+  }
   double evaluate_law(const RowIncrement&, std::span<const double> lambda, std::span<double> strain,
                       std::span<double> tangent) const override {
     double potential = 0;
@@ -53,7 +55,7 @@ struct HeightRows final : RowPool {
     }
     return potential;
   }
-  int memory() const override { return with_law ? 1 : 0; }
+  int memory() const override { return 1; }
   void start(std::span<double> memory) const override { memory[0] = 7; }
   void accept(const RowIncrement& increment, std::span<const double>,
               std::span<double> memory) const override {

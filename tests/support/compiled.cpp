@@ -46,13 +46,8 @@ ProblemData::ProblemData(const System& system)
 
 void ProblemData::at_time(const System& system, double t) {
   const SystemParts& parts = system.parts();
-  memory.assign(at(system.memory()), 0.0);
-  for (Index p = 0; p < static_cast<Index>(parts.row_pools.size()); ++p) {
-    const RowPool& pool = *parts.row_pools[at(p)];
-    if (pool.memory() == 0) continue;
-    pool.start(
-        std::span(memory).subspan(at(system.first_memory(p)), static_cast<std::size_t>(pool.memory())));
-  }
+  memory.resize(at(system.memory()));
+  system.start_memory(memory);
   std::fill(force.begin(), force.end(), Vec3{});
   for (const auto& load : parts.loads) load->add(t, force);
   for (std::size_t p = 0; p < parts.row_pools.size(); ++p) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -25,15 +27,13 @@ namespace isochor {
 //   Rates rates(request, frames, s, touch) in the lag: .node(b), then for its coordinates e
 //                                          .kept(own, e), rate of to_space(own), and .add(e, TouchRate&)
 template <class Geometry>
-class FrictionalPool : public StencilPool {
+class FrictionalPool : public StencilPool, public LaggedStencils, public RememberingStencils {
  public:
   std::string_view name() const final { return name_; }
-  bool has_energy() const final { return memory_.law.any(); }
-  int functions() const final { return 1; }
+  StencilShape shape() const final { return {.energy = rubs(), .functions = 1}; }
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const final;
 
-  bool has_lag() const final { return memory_.law.any(); }
-  bool couples() const final { return coupled_ && has_lag(); }
+  bool couples() const final { return coupled_ && rubs(); }
   void lag_derivatives(const StencilRequest& request, const LagSlots& slots) const final;
   int memory() const final { return memory_.per_point() * stencils(); }
   void accept(const StencilRequest& request, std::span<double> memory) const override;
@@ -42,6 +42,12 @@ class FrictionalPool : public StencilPool {
   FrictionalPool(std::string name, FrictionMemory memory, bool coupled)
       : name_(std::move(name)), memory_(memory), coupled_(coupled) {}
   const FrictionMemory& friction_memory() const { return memory_; }
+  bool rubs() const { return memory_.law.any(); }
+  // Of friction alone.
+  StencilFacets friction_facets() const {
+    if (!rubs()) return {};
+    return {.lagged = this, .remembering = this};
+  }
   // The pull that is kept, in space.
   template <class Frames>
   Vec3 pull_in_space(const Frames& frames, Index s, std::span<const double> memory) const {
@@ -65,7 +71,7 @@ template <class Geometry>
 template <class Frames>
 auto FrictionalPool<Geometry>::friction(const StencilRequest& q, const Frames& frames, Index s) const {
   FrictionPoint<typename Geometry::TouchAt> f;
-  if (!has_lag()) return f;
+  if (!rubs()) return f;
   f.spring.stiffness = geometry().stick(s);
   if (q.lag.x.empty()) {
     f.keep(pull_in_space(frames, s, q.memory));
@@ -91,7 +97,7 @@ template <class Geometry>
 void FrictionalPool<Geometry>::evaluate(const StencilRequest& q, const StencilSlots& slots) const {
   const auto frames = geometry().frames(q);
   // Results are read without slip: nothing moves against the friction that is left.
-  const bool slides = has_lag() && !q.lag.x.empty();
+  const bool slides = rubs() && !q.lag.x.empty();
   for (Index s = q.begin; s < q.end; ++s) {
     slots.energy[at(s)] = 0;
     if (!geometry().meets(s)) {
@@ -101,12 +107,14 @@ void FrictionalPool<Geometry>::evaluate(const StencilRequest& q, const StencilSl
     const auto gap = geometry().gap_at(frames, s, q.want);
     slots.value[at(s)] = gap.value;
     const auto f = friction(q, frames, s);
-    if (has_lag()) slots.energy[at(s)] = f.spring.energy();
+    if (rubs()) slots.energy[at(s)] = f.spring.energy();
+    // The frame of a free rigid body may be flat on the way to where its points keep their distances.
+    if (!std::isfinite(gap.value)) slots.energy[at(s)] = std::numeric_limits<double>::infinity();
     if (q.want == Want::value) continue;
     const std::size_t n = nodes_[s].size(), first = at(nodes_.offset[at(s)]);
     const double multiplier = q.function_multiplier[at(s)];
-    const bool rubs = slides && f.rubs();
-    const Vec3 pull = rubs ? f.spring.pull() : Vec3{};
+    const bool pulls = slides && f.rubs();
+    const Vec3 pull = pulls ? f.spring.pull() : Vec3{};
     for (std::size_t i = 0; i < n; ++i) {
       slots.jacobian[first + i] = gap.slope(i, 1);
       slots.gradient[first + i] = gap.slope(i, multiplier) + f.touch.weight[i] * pull;
@@ -115,7 +123,7 @@ void FrictionalPool<Geometry>::evaluate(const StencilRequest& q, const StencilSl
     Mat3* blocks = slots.hessian.data() + hessian_offset()[at(s)];
     std::fill_n(blocks, n * (n + 1) / 2, Mat3{});
     geometry().add_curvature(q, frames, gap, s, blocks);
-    if (rubs) f.add_curvature(n, blocks);
+    if (pulls) f.add_curvature(n, blocks);
   }
 }
 
@@ -160,7 +168,7 @@ void FrictionalPool<Geometry>::differentiate(const Point& f, const Vec3& kept, R
 
 template <class Geometry>
 void FrictionalPool<Geometry>::accept(const StencilRequest& q, std::span<double> memory) const {
-  if (!has_lag()) return;
+  if (!rubs()) return;
   const auto frames = geometry().frames(q);
   for (Index s = 0; s < stencils(); ++s) {
     Vec3 own{};

@@ -17,7 +17,7 @@ namespace isochor {
 // and has the rows of ContactRows. Energy changes by
 //   sum P (u_before + u_after) / 2 = -sum P (1 - e) u / 2 <= 0
 // in the impact, and not upward in the increment under implicit Euler.
-class BouncingRows final : public ContactRows {
+class BouncingRows final : public ContactRows, public ImpactRows {
  public:
   BouncingRows(std::string name, double resolve_time, std::shared_ptr<const ContactPool> pool,
                double restitution, double slowest)
@@ -26,8 +26,12 @@ class BouncingRows final : public ContactRows {
         restitution_(restitution),
         slowest_(slowest) {}
 
-  bool looks_back() const override { return true; }
-  bool look_back(const RowStart& start, std::span<Vec3> jump) const override {
+  RowFacets facets() const override {
+    RowFacets f = ContactRows::facets();
+    f.impact = this;
+    return f;
+  }
+  bool add_jumps(const ImpactStart& start, std::span<Vec3> jump) const override {
     constexpr int most_rounds = 20;
     const ContactFrame before = pool_->frame(start.t0, start.x), later = pool_->frame(start.t1, start.ahead);
     // An impact may send other points the way of one.
@@ -42,7 +46,7 @@ class BouncingRows final : public ContactRows {
  private:
   // Speeds of the points that close now into the first half of the work, no impulses into the second. Returns
   // the largest speed.
-  double find_hits(const RowStart& start, const ContactFrame& before, const ContactFrame& later,
+  double find_hits(const ImpactStart& start, const ContactFrame& before, const ContactFrame& later,
                    std::span<const Vec3> jump) const {
     const auto speed = start.work.first(at(rows())), impulse = start.work.subspan(at(rows()));
     double fastest = 0;
@@ -59,7 +63,7 @@ class BouncingRows final : public ContactRows {
     return fastest;
   }
 
-  void strike(const RowStart& start, const ContactFrame& before, const ContactFrame& later, double fastest,
+  void strike(const ImpactStart& start, const ContactFrame& before, const ContactFrame& later, double fastest,
               std::span<Vec3> jump) const {
     constexpr int most_sweeps = 200;
     constexpr double settled = 1e-12;

@@ -39,8 +39,8 @@ class ContactInstance final : public EffectInstance {
       sum.area += area;
       sum.depth = std::max(sum.depth, rows_->depth(s, lambda[at(s)]) / std::sqrt(area));
       sum.pressure = std::max(sum.pressure, -lambda[at(s)] / area);
-      const Distance d = distance_to(pool_->shape(), pool_->own_place(s, frame, c.state.x));
-      sum.force -= lambda[at(s)] * (frame.A * d.normal);
+      const Distance d = distance_to(pool_->obstacle(), pool_->own_place(s, frame, c.state.x));
+      sum.force -= lambda[at(s)] * transposed_times(frame.inverse, d.normal);
       if (!rubs) continue;
       const Vec3 f = pool_->kept_pull(s, memory);
       sum.tangential += std::sqrt(dot(f, f));
@@ -70,10 +70,7 @@ class ContactInstance final : public EffectInstance {
 
  private:
   std::span<const double> memory_of(const GaugeContext& c) const {
-    if (pool_->memory() == 0) return {};
-    return std::span<const double>(c.state.extra)
-        .subspan(at(c.system.first_stencil_memory(rows_->stencil_pool)),
-                 static_cast<std::size_t>(pool_->memory()));
+    return c.system.stencil_memory(rows_->stencil_pool, std::span<const double>(c.state.extra));
   }
 
   std::shared_ptr<const ContactPool> pool_;

@@ -19,7 +19,7 @@ void rigid_velocities(const ControlPoints& points, const ContactFrame& frame, do
 
 // Velocity at p of the rigid motion that is closest to the velocities of the control points: a time step
 // along a chord leaves them one that stretches the body a little.
-Vec3 rigid_velocity(const ControlPoints& points, const ContactFrame& frame, const RowStart& start,
+Vec3 rigid_velocity(const ControlPoints& points, const ContactFrame& frame, const ImpactStart& start,
                     std::span<const Vec3> jump, const Vec3& p) {
   Vec3 mean{}, moment{};  // of momentum over mass
   for (const Index n : points.node) {
@@ -41,7 +41,7 @@ double mass_of(const ControlPoints& points, std::span<const double> mass) {
 
 }  // namespace
 
-double ContactPool::gap_rate(Index s, const RowStart& start, const ContactFrame& frame,
+double ContactPool::gap_rate(Index s, const ImpactStart& start, const ContactFrame& frame,
                              const ContactFrame& later, std::span<const Vec3> jump) const {
   const Vec3 p = point(s, start.x), own = own_place(s, frame, start.x);
   const auto& rider = rider_[at(s)];
@@ -59,7 +59,7 @@ double ContactPool::gap_rate(Index s, const RowStart& start, const ContactFrame&
   return dot(transposed_times(frame.inverse, distance_to(shape_, own).normal), rate);
 }
 
-ContactPool::Impact ContactPool::impact(Index s, const RowStart& start, const ContactFrame& frame) const {
+ContactPool::Impact ContactPool::impact(Index s, const ImpactStart& start, const ContactFrame& frame) const {
   const Vec3 p = point(s, start.x), own = own_place(s, frame, start.x);
   const Vec3 normal = transposed_times(frame.inverse, distance_to(shape_, own).normal);
   const auto& rider = rider_[at(s)];

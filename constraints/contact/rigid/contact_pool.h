@@ -13,7 +13,7 @@ namespace isochor {
 // is the distance to the shape less an offset, negative inside. With the position in the shape's axes A y = p
 // - c and the weights c_i of the nodes in the motion of the point relative to the shape,
 //   d gap/dx_i = c_i n,  n = A^-T grad d(y).
-class ContactPool final : public FrictionalPool<ContactPool> {
+class ContactPool final : public FrictionalPool<ContactPool>, public BarrierStencils {
  public:
   // The pose of `shape` counts where there are no control points.
   ContactPool(std::string name, Obstacle shape, FrictionLaw friction,
@@ -26,7 +26,11 @@ class ContactPool final : public FrictionalPool<ContactPool> {
   void finish() { finish_topology(); }
 
   bool sees_rigid_motion() const override { return !points_; }
-  bool has_barrier() const override { return shape_.shape != ObstacleShape::plane; }
+  StencilFacets facets() const override {
+    StencilFacets f = friction_facets();
+    if (shape_.shape != ObstacleShape::plane) f.barrier = this;
+    return f;
+  }
   Index passing(const StencilIncrement& increment, std::span<const Vec3> x,
                 std::span<Vec3> stopped) const override;
   double entry(double t0, double t1, std::span<const Vec3> from, std::span<const Vec3> x) const override;
@@ -50,14 +54,14 @@ class ContactPool final : public FrictionalPool<ContactPool> {
   // Impacts, in contact_impact.cpp. Rate of the gap [m/s] when an increment begins, at velocities v + jump;
   // obstacles move as they will until it ends. And what a unit impulse along the normal does: velocities of
   // the nodes of the stencil, and the rate of the gap.
-  double gap_rate(Index s, const RowStart& start, const ContactFrame& frame, const ContactFrame& later,
+  double gap_rate(Index s, const ImpactStart& start, const ContactFrame& frame, const ContactFrame& later,
                   std::span<const Vec3> jump) const;
   struct Impact {
     std::array<Vec3, 8> velocity{};  // [m/s over N s]
     double mobility = 0;             // [1/kg]
   };
-  Impact impact(Index s, const RowStart& start, const ContactFrame& frame) const;
-  const Obstacle& shape() const { return shape_; }
+  Impact impact(Index s, const ImpactStart& start, const ContactFrame& frame) const;
+  const Obstacle& obstacle() const { return shape_; }
 
  private:
   friend class FrictionalPool<ContactPool>;

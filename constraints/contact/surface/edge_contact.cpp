@@ -54,9 +54,7 @@ ContactTotals EdgeContact::totals(const GaugeContext& c) const {
   const Index place = rows_->stencil_pool;
   const auto& pool = static_cast<const EdgeContactPool&>(*c.system.parts().stencil_pools[at(place)]);
   const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
-  const auto memory =
-      std::span<const double>(c.state.extra)
-          .subspan(at(c.system.first_stencil_memory(place)), static_cast<std::size_t>(pool.memory()));
+  const auto memory = c.system.stencil_memory(place, std::span<const double>(c.state.extra));
   for (Index s = 0; s < pool.stencils(); ++s) {
     if (!pool.meets(s)) continue;
     const EdgeGap gap = pool.gap(s, c.state.x);

@@ -54,14 +54,14 @@ void EdgeContactPool::accept(const StencilRequest& q, std::span<double> memory) 
   FrictionalPool::accept(q, memory);
 }
 
-FollowAnswer EdgeContactPool::followed(const FollowRequest& q) const {
+Renewal EdgeContactPool::renewed(const RenewalRequest& q) const {
   const SurfaceEdges& edges = *setup_->edges;
   const double small = 1e-3 * edges.size();
   std::vector<SurfaceEdges::Finding> found(partner_.size());
   const std::vector<Index> base =
       q.memory.empty() ? partner_ : pairs_in_memory(q.memory, friction_memory().per_point());
   edges.search(q.from, q.x, reach(), setup_->offset, base, q.parallel, found);
-  FollowAnswer answer;
+  Renewal answer;
   bool needed = false;
   std::vector<Index> target = base;
   for (Index s = 0; s < stencils(); ++s) {

@@ -11,7 +11,7 @@ namespace isochor {
 // value of EdgeGap, and the nodes are those. Edges without a partner have none, and a gap that is never
 // closed. Both edges of a pair have a stencil, so that neither is master or slave. What friction keeps turns
 // with the edge.
-class EdgeContactPool final : public FrictionalPool<EdgeContactPool> {
+class EdgeContactPool final : public FrictionalPool<EdgeContactPool>, public RenewedStencils {
  public:
   struct Setup : PairSetup {
     std::shared_ptr<const SurfaceEdges> edges;
@@ -20,8 +20,8 @@ class EdgeContactPool final : public FrictionalPool<EdgeContactPool> {
 
   // By edge: one more than the partner, then what friction keeps.
   void accept(const StencilRequest& request, std::span<double> memory) const override;
-  bool follows() const override { return true; }
-  FollowAnswer followed(const FollowRequest& request) const override;
+  StencilFacets facets() const override { return with_pairs(friction_facets(), *this, *this); }
+  Renewal renewed(const RenewalRequest& request) const override;
   Result<std::shared_ptr<const StencilPool>> restored(std::span<const double> memory) const override;
 
   const Setup& setup() const { return *setup_; }

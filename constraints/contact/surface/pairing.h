@@ -20,6 +20,14 @@ struct PairSetup {
   bool coupled = false;
 };
 
+// Pairs are renewed, and remembered whether anything rubs or not.
+inline StencilFacets with_pairs(StencilFacets f, const RememberingStencils& remembering,
+                                const RenewedStencils& renewed) {
+  f.remembering = &remembering;
+  f.renewed = &renewed;
+  return f;
+}
+
 // Rows of stencils that stand for the areas given [m^2], and the settings of their pools. `size`: of a face
 // [m].
 std::shared_ptr<ContactRows> pair_rows(const Builder& builder, const SurfaceContactDef& def, std::string name,
@@ -39,7 +47,7 @@ Result<std::vector<Index>> checked_pairs(std::span<const double> memory, int per
 template <class Pool>
 std::shared_ptr<const Pool> first_pairs(const Builder& builder, Pool unpaired) {
   const std::vector<double> nothing(static_cast<std::size_t>(unpaired.memory()), 0);
-  FollowAnswer start = unpaired.followed({nothing, builder.rest(), builder.rest(), false, nullptr});
+  Renewal start = unpaired.renewed({nothing, builder.rest(), builder.rest(), false, nullptr});
   if (start.pool) return std::static_pointer_cast<const Pool>(std::move(start.pool));
   return std::make_shared<const Pool>(std::move(unpaired));
 }

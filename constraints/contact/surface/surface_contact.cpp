@@ -41,7 +41,7 @@ class SurfaceContactInstance final : public EffectInstance {
   void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
     const auto& pool = pool_of(c);
     const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
-    const auto memory = memory_of(c, pool);
+    const auto memory = memory_of(c);
     const auto& points = pool.setup().surface->points();
     const bool between = !pool.setup().surface->single();  // within a body forces cancel
     ContactTotals sum;
@@ -76,7 +76,7 @@ class SurfaceContactInstance final : public EffectInstance {
   bool surface_forces(const GaugeContext& c, SurfaceForces& f) const override {
     const auto& pool = pool_of(c);
     const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
-    const auto memory = memory_of(c, pool);
+    const auto memory = memory_of(c);
     const auto& points = pool.setup().surface->points();
     const std::size_t count = c.state.x.size();
     f.normal.assign(count, 0);
@@ -126,10 +126,8 @@ class SurfaceContactInstance final : public EffectInstance {
   const SurfaceContactPool& pool_of(const GaugeContext& c) const {
     return static_cast<const SurfaceContactPool&>(*c.system.parts().stencil_pools[at(rows_->stencil_pool)]);
   }
-  std::span<const double> memory_of(const GaugeContext& c, const SurfaceContactPool& pool) const {
-    return std::span<const double>(c.state.extra)
-        .subspan(at(c.system.first_stencil_memory(rows_->stencil_pool)),
-                 static_cast<std::size_t>(pool.memory()));
+  std::span<const double> memory_of(const GaugeContext& c) const {
+    return c.system.stencil_memory(rows_->stencil_pool, std::span<const double>(c.state.extra));
   }
 
   std::shared_ptr<const ContactRows> rows_;

@@ -105,14 +105,14 @@ bool SurfaceContactPool::reaches_out(const PatchPoint& near, Index s, Index cent
          std::any_of(near.weight.begin(), near.weight.end(), [](double w) { return w < -0.25; });
 }
 
-FollowAnswer SurfaceContactPool::followed(const FollowRequest& q) const {
+Renewal SurfaceContactPool::renewed(const RenewalRequest& q) const {
   const ContactSurface& surface = *setup_->surface;
   const double deep = 0.5 * surface.size();
   std::vector<ContactSurface::Finding> found(center_.size());
   const std::vector<Index> base =
       q.memory.empty() ? center_ : pairs_in_memory(q.memory, friction_memory().per_point());
   surface.search(q.from, q.x, reach(), base, q.parallel, found);
-  FollowAnswer answer;
+  Renewal answer;
   bool needed = false;
   std::vector<Index> target(center_.size(), -1);
   for (Index s = 0; s < stencils(); ++s) {

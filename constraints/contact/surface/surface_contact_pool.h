@@ -12,7 +12,7 @@ namespace isochor {
 // which the nearest place is found at every evaluation. Points that nothing is close to have no nodes, and a
 // gap that is never closed. What friction keeps turns with the triangle of the point, whose corners are nodes
 // of the stencil as well where friction is coupled.
-class SurfaceContactPool final : public FrictionalPool<SurfaceContactPool> {
+class SurfaceContactPool final : public FrictionalPool<SurfaceContactPool>, public RenewedStencils {
  public:
   struct Setup : PairSetup {
     std::shared_ptr<const ContactSurface> surface;
@@ -22,8 +22,8 @@ class SurfaceContactPool final : public FrictionalPool<SurfaceContactPool> {
 
   // By point: one more than the center, then what friction keeps.
   void accept(const StencilRequest& request, std::span<double> memory) const override;
-  bool follows() const override { return true; }
-  FollowAnswer followed(const FollowRequest& request) const override;
+  StencilFacets facets() const override { return with_pairs(friction_facets(), *this, *this); }
+  Renewal renewed(const RenewalRequest& request) const override;
   Result<std::shared_ptr<const StencilPool>> restored(std::span<const double> memory) const override;
 
   const Setup& setup() const { return *setup_; }

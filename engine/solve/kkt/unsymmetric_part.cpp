@@ -33,11 +33,9 @@ void add(Mat3& sum, const Mat3& m) {
 UnsymmetricPart::UnsymmetricPart(std::shared_ptr<const System> system, const Parallel& parallel)
     : system_(std::move(system)), parallel_(parallel) {
   std::size_t blocks = 0, columns = 0;
-  const auto& all = system_->parts().stencil_pools;
-  for (std::size_t p = 0; p < all.size(); ++p) {
-    const StencilPool& pool = *all[p];
-    if (!pool.has_lag()) continue;
-    PoolSlots slots{static_cast<Index>(p), blocks, columns, {0}};
+  for (const auto& [p, lagged] : system_->facets().lagged) {
+    const StencilPool& pool = *system_->parts().stencil_pools[at(p)];
+    PoolSlots slots{p, lagged, blocks, columns, {0}};
     for (Index s = 0; s < pool.stencils(); ++s) {
       const auto n = static_cast<std::int64_t>(pool.nodes()[s].size());
       slots.block_offset.push_back(slots.block_offset.back() + n * n);
@@ -132,7 +130,7 @@ void UnsymmetricPart::evaluate(const Assembly& assembly, std::span<const Vec3> x
       const Index functions = pool.functions();
       std::fill_n(out.column.begin() + functions * offset[at(begin)],
                   functions * (offset[at(end)] - offset[at(begin)]), Vec3{});
-      pool.lag_derivatives(part, out);
+      slots.lagged->lag_derivatives(part, out);
     });
   }
 }

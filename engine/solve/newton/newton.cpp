@@ -342,7 +342,7 @@ bool Newton::search(const SaddleProblem& p, std::span<Vec3> x, std::span<double>
   resting_ = resting_ || (has_gap_ && tau < 1);
   // Stencils that follow what is close may have a small jump where what is nearest changes: a search that
   // goes downhill creeps up to it and stays, until they look again.
-  creeping_ = tau < (s.has_followers() ? 0.01 * most : 1e-3) ? creeping_ + 1 : 0;
+  creeping_ = tau < (s.renews_stencils() ? 0.01 * most : 1e-3) ? creeping_ + 1 : 0;
   return true;
 }
 
@@ -512,7 +512,7 @@ SaddleReport Newton::solve(const SaddleProblem& p, const SaddleOptions& options,
   begin_search(options);
   const System& s = *system_;
   clamp(lambda);
-  bool unmended = s.has_followers() && p.mass_scale == 0;
+  bool unmended = s.renews_stencils() && p.mass_scale == 0;
   double before = 0;
   for (int iteration = 0;; ++iteration) {
     {
