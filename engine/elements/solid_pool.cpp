@@ -165,6 +165,12 @@ void SolidPool::flush(const StencilRequest& request, const StencilSlots& slots, 
     }
     write(request, slots, lanes[l], psi, P, A);
   }
+  // A logarithm of what is inside out: no value, whatever the material says.
+  if (strain_ == VolumeStrain::linear || data_.functions == 0) return;
+  for (int l = 0; l < count; ++l) {
+    if (1 + lanes[l].volume_strain <= 0)
+      slots.energy[at(lanes[l].stencil)] = std::numeric_limits<double>::infinity();
+  }
 }
 
 double SolidPool::strain_multiplier(const StencilRequest& request, const Lane& lane) const {

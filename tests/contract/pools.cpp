@@ -1,5 +1,4 @@
 // The contract of every stencil pool, in the scenes of the registry.
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -198,31 +197,6 @@ TEST_CASE("undeformed pools pull nowhere and their rows are zero") {
     for (const double e : s.energy) CHECK(e == 0);
     for (const double v : s.value) CHECK(v == 0);
     for (const Vec3& g : s.gradient) CHECK(dot(g, g) == 0);
-  });
-}
-
-TEST_CASE("definite stencil Hessians have no negative eigenvalue") {
-  for_every_pool([](const PoolProbe& probe, const test::SceneCase&) {
-    if (!probe.pool().has_energy()) return;
-    auto crushed = probe.scene().x();
-    for (Vec3& p : crushed) p = Vec3{0.9 * p.x, 1.3 * p.y, 0.8 * p.z};
-    bool was_indefinite = false;
-    for (const auto definiteness : {Definiteness::exact, Definiteness::projected, Definiteness::absolute}) {
-      const test::Slots s = probe.evaluate(Want::hessian, crushed, probe.multiplier(), definiteness);
-      double lowest = 0, highest = 0;
-      for (Index i = 0; i < probe.pool().stencils(); ++i) {
-        if (probe.pool().nodes()[i].empty()) continue;
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(probe.dense_hessian(s, i));
-        lowest = std::min(lowest, eigen.eigenvalues().minCoeff());
-        highest = std::max(highest, eigen.eigenvalues().maxCoeff());
-      }
-      if (definiteness == Definiteness::exact) {
-        was_indefinite = lowest < -1e-6 * highest;
-      } else {
-        CHECK(lowest >= -1e-12 * highest);
-      }
-    }
-    (void)was_indefinite;
   });
 }
 

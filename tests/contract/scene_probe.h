@@ -24,6 +24,9 @@ class SceneProbe {
 
   const isochor::System& system() const { return *compiled_.system; }
   std::shared_ptr<const isochor::System> shared_system() const { return compiled_.system; }
+  const std::vector<std::unique_ptr<isochor::EffectInstance>>& instances() const {
+    return compiled_.instances;
+  }
   const std::vector<isochor::Vec3>& rest() const { return compiled_.system->parts().rest; }
   // A deformed state inside the domain of every energy.
   const std::vector<isochor::Vec3>& x() const { return x_; }
