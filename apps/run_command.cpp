@@ -101,9 +101,9 @@ void print_state(const RunResult& r) {
   }
   table.add({"volume rows", number(end.volume_row_residual, 2), "left over"});
   table.add({"energy", number(end.total_energy(), 5),
-             "J: elastic " + number(end.elastic_energy) + ", kinetic " + number(end.kinetic_energy) +
-                 ", of the weight " + number(end.gravity_potential) + ", of loads " +
-                 number(end.load_potential)});
+             "J: elastic " + number(end.energy.elastic) + ", kinetic " + number(end.energy.kinetic) +
+                 ", of the weight " + number(end.energy.gravity) + ", of loads " +
+                 number(end.load_potential())});
   for (const Gauge& g : end.gauges) {
     if (g.kind == "orientation" && g.quantity == "angle")
       table.add({"turn of " + g.effect, number(g.value), g.unit});

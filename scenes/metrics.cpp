@@ -90,13 +90,13 @@ double quantity(const SceneDef& scene, const MetricDef& m, const std::vector<Ste
     case Quantity::max_J:
       return part(r, m.of).max_J;
     case Quantity::elastic_energy:
-      return r.elastic_energy;
+      return r.energy.elastic;
     case Quantity::kinetic_energy:
-      return r.kinetic_energy;
+      return r.energy.kinetic;
     case Quantity::gravity_potential:
-      return r.gravity_potential;
+      return r.energy.gravity;
     case Quantity::load_potential:
-      return r.load_potential;
+      return r.load_potential();
     case Quantity::potential_energy:
       return r.potential_energy();
     case Quantity::total_energy:

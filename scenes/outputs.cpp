@@ -75,8 +75,8 @@ std::string table_row(const StepRecord& r) {
        {r.time, static_cast<double>(r.work.iterations), static_cast<double>(r.substeps),
         static_cast<double>(r.rejected), static_cast<double>(r.work.stand_ins), r.force_residual,
         r.row_residual, r.constitutive_residual, r.volume_row_residual, r.total.volume_change(), r.min_J,
-        r.max_J, static_cast<double>(r.inverted_cells), r.elastic_energy, r.kinetic_energy,
-        r.gravity_potential, r.load_potential, r.total_energy(), r.seconds}) {
+        r.max_J, static_cast<double>(r.inverted_cells), r.energy.elastic, r.energy.kinetic, r.energy.gravity,
+        r.load_potential(), r.total_energy(), r.seconds}) {
     line += "," + number(v);
   }
   const auto add = [&](const Vec3& v) { line += "," + number(v.x) + "," + number(v.y) + "," + number(v.z); };

@@ -30,12 +30,12 @@ struct StepRecord {
   // body has lost, see `total` and `parts`.
   double volume_row_residual = 0;
   double min_J = 1, max_J = 1;
-  Index inverted_cells = 0;                          // cells with J <= 0
-  std::string warning;                               // StepReport::warning
-  double elastic_energy = 0, kinetic_energy = 0;     // [J]
-  double gravity_potential = 0, load_potential = 0;  // as in Energies, the latter with pressures [J]
-  double potential_energy() const { return elastic_energy + gravity_potential + load_potential; }  // [J]
-  double total_energy() const { return kinetic_energy + potential_energy(); }                      // [J]
+  Index inverted_cells = 0;                                                  // cells with J <= 0
+  std::string warning;                                                       // StepReport::warning
+  Energies energy;                                                           // [J]
+  double load_potential() const { return energy.loads + energy.pressures; }  // [J]
+  double potential_energy() const { return energy.elastic + energy.gravity + load_potential(); }  // [J]
+  double total_energy() const { return energy.kinetic + potential_energy(); }                     // [J]
   VolumeMeasures total;                      // of all bodies together
   std::vector<VolumeMeasures> parts;         // bodies, and regions as "body.region" where a body has several
   std::array<Vec3, 2> momentum{};            // linear [kg m/s], angular about the origin [kg m^2/s]

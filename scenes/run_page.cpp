@@ -96,10 +96,10 @@ void add_measures(const RunView& view, std::vector<PageSeries>& out) {
     // Of what the scene does not have there is no curve.
     if (std::any_of(s.y.begin(), s.y.end(), [](double v) { return v != 0; })) out.push_back(std::move(s));
   };
-  energy("elastic", [](const StepRecord& s) { return s.elastic_energy; });
-  energy("kinetic", [](const StepRecord& s) { return s.kinetic_energy; });
-  energy("of the weight", [](const StepRecord& s) { return s.gravity_potential; });
-  energy("of loads", [](const StepRecord& s) { return s.load_potential; });
+  energy("elastic", [](const StepRecord& s) { return s.energy.elastic; });
+  energy("kinetic", [](const StepRecord& s) { return s.energy.kinetic; });
+  energy("of the weight", [](const StepRecord& s) { return s.energy.gravity; });
+  energy("of loads", [](const StepRecord& s) { return s.load_potential(); });
   energy("total", [](const StepRecord& s) { return s.total_energy(); });
   for (std::size_t kind = 0; moves && kind < 2; ++kind) {
     for (int k = 0; k < 3; ++k) {

@@ -59,11 +59,7 @@ void record_measures(const SceneDef& scene, const BuiltScene& built, StepRecord&
   }
   r.total.min_J = r.min_J;
   r.total.max_J = r.max_J;
-  const Energies e = world.energies();
-  r.elastic_energy = e.elastic;
-  r.kinetic_energy = e.kinetic;
-  r.gravity_potential = e.gravity;
-  r.load_potential = e.loads + e.pressures;
+  r.energy = world.energies();
   r.momentum = world.momentum();
   for (const OrientationDef& o : scene.orientations)
     add_orientation(o.name, world.orientation(o.where), r.gauges);

@@ -43,10 +43,10 @@ void add_state(Json& j, const RunResult& r) {
   j["min_J"] = end.min_J;
   j["max_J"] = end.max_J;
   j["inverted_cells"] = end.inverted_cells;
-  j["elastic_energy_J"] = end.elastic_energy;
-  j["kinetic_energy_J"] = end.kinetic_energy;
-  j["gravity_potential_J"] = end.gravity_potential;
-  j["load_potential_J"] = end.load_potential;
+  j["elastic_energy_J"] = end.energy.elastic;
+  j["kinetic_energy_J"] = end.energy.kinetic;
+  j["gravity_potential_J"] = end.energy.gravity;
+  j["load_potential_J"] = end.load_potential();
   j["potential_energy_J"] = end.potential_energy();
   j["total_energy_J"] = end.total_energy();
   j["linear_momentum_kg_m_s"] = list_of(end.momentum[0]);

@@ -128,6 +128,55 @@ SceneDef squeezed_block(const SceneVariant& v) {
   return s;
 }
 
+namespace {
+
+// One of three fingers around the ball: hangs, is inflated until `closed` and lifted until `up`.
+void add_gripper_finger(SceneDef& s, int k, double closed, double up, const SceneVariant& v) {
+  const double third = 2 * std::acos(-1.0) / 3;
+  const std::string name = "finger " + std::to_string(k + 1);
+  // From along x with the sole below to hanging down with the sole inward, then around the axis.
+  const double a = 0.5 * third, phi = k * third, c = std::cos(0.5 * phi), n = std::sin(0.5 * phi);
+  const double w0 = std::cos(a), q = std::sin(a) / std::sqrt(3.0);
+  const double w = c * w0 + n * q;
+  const Vec3 u{c * q - n * q, c * q + n * q, -c * q + n * w0};
+  const double sine = std::sqrt(dot(u, u));
+  SceneBody b;
+  b.name = name;
+  MeshFile mesh{"meshes/finger_small.msh", 1};
+  // Without the last digits, which depend on how this is compiled.
+  const auto tidy = [](Vec3 x) {
+    for (int i = 0; i < 3; ++i) x[i] = std::round(1e12 * x[i]) / 1e12;
+    return x;
+  };
+  mesh.turn = tidy((2 * std::atan2(sine, w) / sine) * u);
+  mesh.offset = tidy({0.032 * std::cos(phi), 0.032 * std::sin(phi), 0});
+  b.mesh = mesh;
+  b.element = v.element.value_or(Element::tet4_edge_smoothed);
+  b.materials = {rubber(100e3, 0.499, 1000, "body"), rubber(3e6, 0.499, 1000, "limiting_layer")};
+  s.bodies.push_back(b);
+  const BodyId body{k};
+  DirichletDef base = hold("", "clamped");
+  base.name = "base " + std::to_string(k + 1);
+  base.where.body = body;
+  base.displacement = {0, 0, 0.04};
+  base.amount = Curve{{{closed + 0.2, 0}, {up, 1}}};
+  s.dirichlet.push_back(base);
+  CavityDef air = chamber("chamber", 0);
+  air.name = "air " + std::to_string(k + 1);
+  air.body = body;
+  air.amount = Curve{{{0, 0}, {closed, 14e3}}};
+  s.cavities.push_back(air);
+  ContactDef grip;
+  grip.name = "grip " + std::to_string(k + 1);
+  grip.body = body;
+  grip.surfaces = {"outer", "tip"};
+  grip.against = "ball";
+  grip.friction = 0.8;
+  s.contacts.push_back(grip);
+}
+
+}  // namespace
+
 SceneDef gripper(const SceneVariant& v) {
   SceneDef s;
   s.name = "gripper";
@@ -137,49 +186,8 @@ SceneDef gripper(const SceneVariant& v) {
       "lift it by "
       "4 cm and hold it by friction for five seconds.";
   s.folder = scenes_folder();
-  const double third = 2 * std::acos(-1.0) / 3, ball = 0.025, height = -0.052, closed = 0.8, up = 2;
-  for (int k = 0; k < 3; ++k) {
-    const std::string name = "finger " + std::to_string(k + 1);
-    // From along x with the sole below to hanging down with the sole inward, then around the axis.
-    const double a = 0.5 * third, phi = k * third, c = std::cos(0.5 * phi), n = std::sin(0.5 * phi);
-    const double w0 = std::cos(a), q = std::sin(a) / std::sqrt(3.0);
-    const double w = c * w0 + n * q;
-    const Vec3 u{c * q - n * q, c * q + n * q, -c * q + n * w0};
-    const double sine = std::sqrt(dot(u, u));
-    SceneBody b;
-    b.name = name;
-    MeshFile mesh{"meshes/finger_small.msh", 1};
-    // Without the last digits, which depend on how this is compiled.
-    const auto tidy = [](Vec3 x) {
-      for (int i = 0; i < 3; ++i) x[i] = std::round(1e12 * x[i]) / 1e12;
-      return x;
-    };
-    mesh.turn = tidy((2 * std::atan2(sine, w) / sine) * u);
-    mesh.offset = tidy({0.032 * std::cos(phi), 0.032 * std::sin(phi), 0});
-    b.mesh = mesh;
-    b.element = v.element.value_or(Element::tet4_edge_smoothed);
-    b.materials = {rubber(100e3, 0.499, 1000, "body"), rubber(3e6, 0.499, 1000, "limiting_layer")};
-    s.bodies.push_back(b);
-    const BodyId body{k};
-    DirichletDef base = hold("", "clamped");
-    base.name = "base " + std::to_string(k + 1);
-    base.where.body = body;
-    base.displacement = {0, 0, 0.04};
-    base.amount = Curve{{{closed + 0.2, 0}, {up, 1}}};
-    s.dirichlet.push_back(base);
-    CavityDef air = chamber("chamber", 0);
-    air.name = "air " + std::to_string(k + 1);
-    air.body = body;
-    air.amount = Curve{{{0, 0}, {closed, 14e3}}};
-    s.cavities.push_back(air);
-    ContactDef grip;
-    grip.name = "grip " + std::to_string(k + 1);
-    grip.body = body;
-    grip.surfaces = {"outer", "tip"};
-    grip.against = "ball";
-    grip.friction = 0.8;
-    s.contacts.push_back(grip);
-  }
+  const double ball = 0.025, height = -0.052, closed = 0.8, up = 2;
+  for (int k = 0; k < 3; ++k) add_gripper_finger(s, k, closed, up, v);
   RigidBodyDef thing;
   thing.name = "ball";
   thing.shape.shape = ObstacleShape::sphere;
