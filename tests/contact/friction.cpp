@@ -74,9 +74,9 @@ TEST_CASE("the potential of friction has exact derivatives, sticking and slippin
   ball.motion.keys[1] = {1, {0.2, 0.1, 0}, {0.8, 0, 0.6, 0}};
   int stuck = 0, slipped = 0;
   for (int k = 0; k < 200; ++k) {
-    ContactPool pool("probe", ball, 0.5);
-    pool.add(0, 3.0);
-    pool.finish();
+    RigidGeometry geometry(ball);
+    geometry.add(0, 3.0);
+    const ContactPool pool("probe", geometry, 0.5, false);
     const std::array<Vec3, 1> before{Vec3{0.9, 0.3, 0.4} + 0.2 * any()}, lag{before[0] + 0.2 * any()};
     std::array<Vec3, 1> x{before[0] + 0.3 * any()};
     const std::array<double, 1> multiplier{-0.7}, held{-1.5 + unit(random)};

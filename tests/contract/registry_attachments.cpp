@@ -160,7 +160,7 @@ void add_contacts(std::vector<SceneCase>& out, Element element) {
     if (shape == ObstacleShape::sphere) def.compliance = 1e-3;
     SceneCase c =
         on_block("contact, shape " + std::to_string(static_cast<int>(shape)), element,
-                 {"constraints/contact", "constraints/contact_pool", "constraints/contact_frame",
+                 {"constraints/contact", "constraints/rigid_geometry", "constraints/contact_frame",
                   "constraints/contact_entry", "constraints/contact_rows", "constraints/flush_nodes",
                   "constraints/obstacle_shape", "constraints/surface_nodes", "constraints/solid",
                   "constraints/mesh_solid", "constraints/closed_surface", "constraints/field_solid"},
@@ -170,7 +170,7 @@ void add_contacts(std::vector<SceneCase>& out, Element element) {
     if (element != Element::tet4) continue;
     def.coupling = FrictionCoupling::coupled;
     c.name += ", coupled";
-    c.covers = {"constraints/contact_touch"};
+    c.covers = {"constraints/rigid_touch"};
     c.effects.back() = contact(def);
     out.push_back(c);
   }
@@ -185,11 +185,12 @@ void add_surface_contacts(std::vector<SceneCase>& out, Element element) {
     def.coupling = FrictionCoupling::coupled;
     def.thickness = 0.02;
     def.initial_overlap = InitialOverlap::resolve;
-    SceneCase c = on_block(friction > 0 ? "surface contact with friction" : "surface contact", element,
-                           {"constraints/surface_contact", "constraints/surface_contact_pool",
-                            "constraints/contact_surface", "constraints/patch_distance",
-                            "constraints/surface_touch", "constraints/pairing", "constraints/contact_effect"},
-                           surface_contact(def));
+    SceneCase c =
+        on_block(friction > 0 ? "surface contact with friction" : "surface contact", element,
+                 {"constraints/surface_contact", "constraints/surface_contact_pool",
+                  "constraints/contact_surface", "constraints/patch_distance", "constraints/patch_touch",
+                  "constraints/patch_geometry", "constraints/pairing", "constraints/contact_effect"},
+                 surface_contact(def));
     Vec3 low = c.mesh.nodes.front(), high = low;
     for (const Vec3& p : c.mesh.nodes) {
       for (int k = 0; k < 3; ++k) {
@@ -222,10 +223,11 @@ void add_crossed_edges(std::vector<SceneCase>& out, Element element) {
     def.friction = friction;
     def.thickness = 0.02;
     def.initial_overlap = InitialOverlap::resolve;
-    SceneCase c = on_block(friction > 0 ? "crossed edges with friction" : "crossed edges", element,
-                           {"constraints/edge_contact", "constraints/edge_contact_pool",
-                            "constraints/edge_distance", "constraints/surface_edges"},
-                           surface_contact(def));
+    SceneCase c =
+        on_block(friction > 0 ? "crossed edges with friction" : "crossed edges", element,
+                 {"constraints/edge_contact", "constraints/edge_contact_pool", "constraints/edge_geometry",
+                  "constraints/edge_distance", "constraints/surface_edges"},
+                 surface_contact(def));
     c.mesh = bar(false);
     c.more_bodies = {bar(true)};
     c.stress_free = false;  // distances between bodies that are apart

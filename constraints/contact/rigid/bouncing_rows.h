@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "constraints/contact/contact_rows.h"
+#include "constraints/contact/rigid/contact_impact.h"
 #include "constraints/contact/rigid/contact_pool.h"
 
 namespace isochor {
@@ -33,7 +34,8 @@ class BouncingRows final : public ContactRows, public ImpactRows {
   }
   bool add_jumps(const ImpactStart& start, std::span<Vec3> jump) const override {
     constexpr int most_rounds = 20;
-    const ContactFrame before = pool_->frame(start.t0, start.x), later = pool_->frame(start.t1, start.ahead);
+    const ContactFrame before = geometry().frame(start.t0, start.x),
+                       later = geometry().frame(start.t1, start.ahead);
     // An impact may send other points the way of one.
     int rounds = 0;
     for (double fastest; rounds < most_rounds; ++rounds) {
@@ -52,10 +54,10 @@ class BouncingRows final : public ContactRows, public ImpactRows {
     double fastest = 0;
     for (Index s = 0; s < rows(); ++s) {
       speed[at(s)] = impulse[at(s)] = 0;
-      const double u = -pool_->gap_rate(s, start, before, later, jump);
+      const double u = -gap_rate(geometry(), s, start, before, later, jump);
       if (!(u > slowest_)) continue;
-      const double jumped = -u - pool_->gap_rate(s, start, before, later, {});
-      if (!(pool_->gap(s, later, start.ahead) + (start.t1 - start.t0) * jumped < start.target[at(s)]))
+      const double jumped = -u - gap_rate(geometry(), s, start, before, later, {});
+      if (!(geometry().gap(s, later, start.ahead) + (start.t1 - start.t0) * jumped < start.target[at(s)]))
         continue;
       speed[at(s)] = u;
       fastest = std::max(fastest, u);
@@ -72,9 +74,10 @@ class BouncingRows final : public ContactRows, public ImpactRows {
       double change = 0;
       for (Index s = 0; s < rows(); ++s) {
         if (speed[at(s)] == 0) continue;
-        const ContactPool::Impact hit = pool_->impact(s, start, before);
+        const Impact hit = impact(geometry(), s, start, before);
         if (!(hit.mobility > 0)) continue;
-        const double missing = restitution_ * speed[at(s)] - pool_->gap_rate(s, start, before, later, jump);
+        const double missing =
+            restitution_ * speed[at(s)] - gap_rate(geometry(), s, start, before, later, jump);
         const double next = std::max(0.0, impulse[at(s)] + missing / hit.mobility);
         const double push = next - impulse[at(s)];
         impulse[at(s)] = next;
@@ -85,6 +88,8 @@ class BouncingRows final : public ContactRows, public ImpactRows {
       if (change <= settled * fastest) break;
     }
   }
+
+  const RigidGeometry& geometry() const { return pool_->geometry(); }
 
   std::shared_ptr<const ContactPool> pool_;
   double restitution_, slowest_;  // e [-]; speed that what is slower does not bounce at [m/s]

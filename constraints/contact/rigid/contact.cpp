@@ -26,20 +26,21 @@ class ContactInstance final : public EffectInstance {
       : pool_(std::move(pool)), rows_(std::move(rows)), row_pool_(row_pool) {}
 
   void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
-    const ContactFrame frame = pool_->frame(c.state.t, c.state.x);
+    const ContactFrame frame = pool_->geometry().frame(c.state.t, c.state.x);
     const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
     const bool rubs = pool_->memory() > 0;
     const auto memory = memory_of(c);
     ContactTotals sum;
     for (Index s = 0; s < pool_->stencils(); ++s) {
-      sum.gap = std::min(sum.gap, pool_->gap(s, frame, c.state.x));
+      sum.gap = std::min(sum.gap, pool_->geometry().gap(s, frame, c.state.x));
       if (!(lambda[at(s)] < 0)) continue;
       const double area = rows_->area[at(s)];
       sum.normal -= lambda[at(s)];
       sum.area += area;
       sum.depth = std::max(sum.depth, rows_->depth(s, lambda[at(s)]) / std::sqrt(area));
       sum.pressure = std::max(sum.pressure, -lambda[at(s)] / area);
-      const Distance d = distance_to(pool_->obstacle(), pool_->own_place(s, frame, c.state.x));
+      const Distance d =
+          distance_to(pool_->geometry().shape(), pool_->geometry().own_place(s, frame, c.state.x));
       sum.force -= lambda[at(s)] * transposed_times(frame.inverse, d.normal);
       if (!rubs) continue;
       const Vec3 f = pool_->kept_pull(s, memory);
@@ -54,11 +55,11 @@ class ContactInstance final : public EffectInstance {
     f.normal.assign(nodes, 0);
     f.tangential.assign(nodes, Vec3{});
     f.area.assign(nodes, 0);
-    const ContactFrame frame = pool_->frame(c.state.t, c.state.x);
+    const ContactFrame frame = pool_->geometry().frame(c.state.t, c.state.x);
     const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
     const auto memory = memory_of(c);
     for (Index s = 0; s < pool_->stencils(); ++s) {
-      if (pool_->rides(s)) continue;  // a point of a rigid body is no node of a surface
+      if (pool_->geometry()[s].rider) continue;  // a point of a rigid body is no node of a surface
       const std::size_t node = at(pool_->nodes()[s][0]);
       f.area[node] = rows_->area[at(s)];
       if (!(lambda[at(s)] < 0)) continue;
@@ -118,19 +119,19 @@ class ContactEffect final : public EffectSource {
       points = rigid.value().points;
       shape = rigid.value().shape;
     }
-    auto pool =
-        std::make_shared<ContactPool>(def_.name, shape, FrictionLaw(def_.friction, def_.static_friction),
-                                      points, def_.coupling == FrictionCoupling::coupled);
+    RigidGeometry geometry(shape, points);
+    auto touching = def_.rigid.empty() ? add_nodes(builder, geometry, called)
+                                       : add_touch_points(builder, geometry, called);
+    if (!touching) return Error{touching.error()};
+    const auto pool = std::make_shared<ContactPool>(def_.name, std::move(geometry),
+                                                    FrictionLaw(def_.friction, def_.static_friction),
+                                                    def_.coupling == FrictionCoupling::coupled);
     auto rows = def_.restitution > 0
                     ? std::make_shared<BouncingRows>(def_.name, def_.resolve_time, pool, def_.restitution,
                                                      def_.restitution_speed)
                     : std::make_shared<ContactRows>(def_.name, def_.resolve_time);
-    if (auto r = def_.rigid.empty() ? add_nodes(builder, *pool, *rows, called)
-                                    : add_touch_points(builder, *pool, *rows, called);
-        !r) {
-      return Error{r.error()};
-    }
-    pool->finish();
+    for (const double area : touching.value().area)
+      rows->add(touching.value().modulus, area, builder.length(), def_.compliance);
     if (auto r = find_overlap(builder, *pool, *rows); !r) return Error{r.error()};
     rows->stencil_pool = builder.add_stencils(pool);
     const Index row_pool = builder.add_rows(rows);
@@ -140,12 +141,18 @@ class ContactEffect final : public EffectSource {
  private:
   std::string who() const { return "contact \"" + def_.name + "\": "; }
 
+  // The areas that points stand for [m^2], and the shear modulus that their pressures are compared with [Pa].
+  struct Touching {
+    std::vector<double> area;
+    double modulus = 0;
+  };
+
   double stick(double mu, double area) const {
     return def_.stick_stiffness > 0 ? def_.stick_stiffness * area : 100 * mu * std::sqrt(area);
   }
 
-  Result<void> add_nodes(const Builder& builder, ContactPool& pool, ContactRows& rows,
-                         const std::string& called) const {
+  Result<Touching> add_nodes(const Builder& builder, RigidGeometry& geometry,
+                             const std::string& called) const {
     auto faces = surface_faces(builder, def_.body, def_.surfaces, called);
     if (!faces) return Error{faces.error()};
     const BodyData& body = builder.body(def_.body);
@@ -153,22 +160,23 @@ class ContactEffect final : public EffectSource {
     const auto per = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
     const std::vector<NodeCells> cells = cells_around(body, builder.rest());
     const std::vector<FlatSide> sides =
-        pool.follows_pose() ? flat_sides(def_.obstacle) : std::vector<FlatSide>();
-    const ContactFrame frame = pool.frame(0, builder.rest());
+        geometry.shape_points() ? std::vector<FlatSide>() : flat_sides(def_.obstacle);
+    const ContactFrame frame = geometry.frame(0, builder.rest());
+    Touching out{{}, mu};
     for (const auto& [node, area] : surface_nodes(faces.value(), per, builder.rest())) {
       if (builder.given_directions(node) == 3) continue;  // goes where it is told to
       const NodeCells& around = cells[at(node - body.first_node)];
-      pool.add(node, stick(mu, area), around.size,
-               inset_of_flush(def_.obstacle, sides, frame.to_own(builder.rest()[at(node)]),
-                              transposed_times(frame.A, around.inward), around.size));
-      rows.add(mu, area, builder.length(), def_.compliance);
+      geometry.add(node, stick(mu, area), around.size,
+                   inset_of_flush(def_.obstacle, sides, frame.to_own(builder.rest()[at(node)]),
+                                  transposed_times(frame.A, around.inward), around.size));
+      out.area.push_back(area);
     }
-    if (rows.rows() > 0) return {};
+    if (!out.area.empty()) return out;
     return Error{who() + "all nodes of its surfaces are held by supports; take surfaces that can move"};
   }
 
-  Result<void> add_touch_points(Builder& builder, ContactPool& pool, ContactRows& rows,
-                                const std::string& called) const {
+  Result<Touching> add_touch_points(Builder& builder, RigidGeometry& geometry,
+                                    const std::string& called) const {
     if (def_.rigid == def_.against) return Error{who() + "a rigid body does not touch itself"};
     auto rigid = find_rigid(builder, def_.rigid, called);
     if (!rigid) return Error{rigid.error()};
@@ -178,17 +186,18 @@ class ContactEffect final : public EffectSource {
     const double extent = smallest_extent(rigid.value().shape);
     const auto touches = touch_points(rigid.value().shape);
     const double area = extent * extent / static_cast<double>(touches.size());
+    Touching out{{}, mu};
     for (const TouchPoint& t : touches) {
-      pool.add(rigid.value().points, t.own, t.offset, stick(mu, area));
-      rows.add(mu, area, builder.length(), def_.compliance);
+      geometry.add(rigid.value().points, t.own, t.offset, stick(mu, area));
+      out.area.push_back(area);
     }
-    return {};
+    return out;
   }
 
   Result<void> find_overlap(const Builder& builder, const ContactPool& pool, ContactRows& rows) const {
-    const ContactFrame frame = pool.frame(0, builder.rest());
+    const ContactFrame frame = pool.geometry().frame(0, builder.rest());
     std::vector<double> gap(rows.area.size());
-    for (Index s = 0; s < pool.stencils(); ++s) gap[at(s)] = pool.gap(s, frame, builder.rest());
+    for (Index s = 0; s < pool.stencils(); ++s) gap[at(s)] = pool.geometry().gap(s, frame, builder.rest());
     const Overlap found = take_overlap(gap, 0, builder.length(), rows);
     if (found.worst < 0 || def_.initial_overlap == InitialOverlap::resolve) return {};
     const Index worst = pool.nodes()[found.worst][0];

@@ -1,5 +1,4 @@
-// What ContactPool knows of impacts.
-#include "constraints/contact/rigid/contact_pool.h"
+#include "constraints/contact/rigid/contact_impact.h"
 
 namespace isochor {
 
@@ -41,29 +40,29 @@ double mass_of(const ControlPoints& points, std::span<const double> mass) {
 
 }  // namespace
 
-double ContactPool::gap_rate(Index s, const ImpactStart& start, const ContactFrame& frame,
-                             const ContactFrame& later, std::span<const Vec3> jump) const {
-  const Vec3 p = point(s, start.x), own = own_place(s, frame, start.x);
-  const auto& rider = rider_[at(s)];
+double gap_rate(const RigidGeometry& geometry, Index s, const ImpactStart& start, const ContactFrame& frame,
+                const ContactFrame& later, std::span<const Vec3> jump) {
+  const Vec3 p = geometry.position(s, start.x), own = geometry.own_place(s, frame, start.x);
+  const auto& rider = geometry[s].rider;
   Vec3 rate{};
   if (rider) {
     rate = rigid_velocity(*rider, frame_of(*rider, start.x), start, jump, p);
   } else {
-    const std::size_t node = at(nodes_[s][0]);
+    const std::size_t node = at(geometry.nodes()[s][0]);
     rate = jump.empty() ? start.v[node] : start.v[node] + jump[node];
   }
-  if (points_)
-    rate -= rigid_velocity(*points_, frame, start, jump, p);
+  if (const auto& points = geometry.shape_points())
+    rate -= rigid_velocity(*points, frame, start, jump, p);
   else
     rate -= (1 / (start.t1 - start.t0)) * (later.to_world(own) - frame.to_world(own));
-  return dot(transposed_times(frame.inverse, distance_to(shape_, own).normal), rate);
+  return dot(transposed_times(frame.inverse, distance_to(geometry.shape(), own).normal), rate);
 }
 
-ContactPool::Impact ContactPool::impact(Index s, const ImpactStart& start, const ContactFrame& frame) const {
-  const Vec3 p = point(s, start.x), own = own_place(s, frame, start.x);
-  const Vec3 normal = transposed_times(frame.inverse, distance_to(shape_, own).normal);
-  const auto& rider = rider_[at(s)];
-  const auto nodes = nodes_[s];
+Impact impact(const RigidGeometry& geometry, Index s, const ImpactStart& start, const ContactFrame& frame) {
+  const Vec3 p = geometry.position(s, start.x), own = geometry.own_place(s, frame, start.x);
+  const Vec3 normal = transposed_times(frame.inverse, distance_to(geometry.shape(), own).normal);
+  const auto& rider = geometry[s].rider;
+  const auto nodes = geometry.nodes()[s];
   Impact out;
   if (rider) {
     rigid_velocities(*rider, frame_of(*rider, start.x), mass_of(*rider, start.mass), start.x, p, normal,
@@ -72,11 +71,11 @@ ContactPool::Impact ContactPool::impact(Index s, const ImpactStart& start, const
     const double m = start.mass[at(nodes[0])];
     out.velocity[0] = (m > 0 ? 1 / m : 0) * normal;
   }
-  if (points_) {
-    rigid_velocities(*points_, frame, mass_of(*points_, start.mass), start.x, p, -normal,
+  if (const auto& points = geometry.shape_points()) {
+    rigid_velocities(*points, frame, mass_of(*points, start.mass), start.x, p, -normal,
                      out.velocity.data() + (rider ? 4 : 1));
   }
-  const auto c = weights(s, own);
+  const auto c = geometry.weights(s, own);
   for (std::size_t i = 0; i < nodes.size(); ++i) out.mobility += c[i] * dot(normal, out.velocity[i]);
   return out;
 }

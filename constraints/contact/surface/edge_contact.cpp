@@ -14,7 +14,7 @@ Result<void> find_overlap(const Builder& builder, const SurfaceContactDef& def, 
   const SurfaceEdges& edges = *pool.setup().edges;
   std::vector<double> gap(rows.area.size(), pool.setup().open);
   for (Index s = 0; s < pool.stencils(); ++s) {
-    if (pool.meets(s)) gap[at(s)] = pool.gap(s, builder.rest()).value;
+    if (pool.geometry().meets(s)) gap[at(s)] = pool.geometry().gap(s, builder.rest()).value;
   }
   // What a search of one body takes for rounding stays.
   const Overlap found = take_overlap(gap, def.against ? 0 : 1e-3 * edges.size(), builder.length(), rows);
@@ -56,15 +56,15 @@ ContactTotals EdgeContact::totals(const GaugeContext& c) const {
   const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
   const auto memory = c.system.stencil_memory(place, std::span<const double>(c.state.extra));
   for (Index s = 0; s < pool.stencils(); ++s) {
-    if (!pool.meets(s)) continue;
-    const EdgeGap gap = pool.gap(s, c.state.x);
+    if (!pool.geometry().meets(s)) continue;
+    const EdgeGap gap = pool.geometry().gap(s, c.state.x);
     // Near the ends of edges corners take over.
     if (gap.weight > 0.5) sum.gap = std::min(sum.gap, gap.distance - pool.setup().offset);
     const double l = -lambda[at(s)];
     if (!(l > 0)) continue;
-    const Vec3 pull = pool.kept_pull(s, memory, c.state.x);
+    const Vec3 pull = pool.kept_pull(SurfaceFrames{c.state.x, c.state.x}, s, memory);
     const double sign = (*pool.setup().edges)[s].side == 0 ? 1 : -1;
-    sum.force += sign * (pool.push(s, -l, c.state.x) - pull);
+    sum.force += sign * (pool.geometry().push(s, -l, c.state.x) - pull);
     sum.normal += l * gap.weight;
     sum.tangential += std::sqrt(dot(pull, pull));
   }

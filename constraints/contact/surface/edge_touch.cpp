@@ -1,4 +1,4 @@
-// Where the edges of EdgeContactPool touch, and how that changes with what friction holds on to: the nearest
+// Where crossed edges touch, and how that changes with what friction holds on to: the nearest
 // places and their weight, the common normal, and the edge that the pull kept turns with.
 #include <algorithm>
 
@@ -8,14 +8,14 @@
 namespace isochor {
 
 // Turn with the edge and the triangles at it.
-Mat3 EdgeContactPool::axes(Index s, std::span<const Vec3> x) const {
+Mat3 EdgeGeometry::axes(Index s, std::span<const Vec3> x) const {
   const auto& n = (*setup_->edges)[s].node;
   const Vec3 p = x[at(n[1])] - x[at(n[0])];
   const Vec3 out = cross(p, x[at(n[2])] - x[at(n[0])]) - cross(p, x[at(n[3])] - x[at(n[0])]);
   return turning_axes(p, out);
 }
 
-EdgeContactPool::TouchAt EdgeContactPool::touch(const StencilRequest&, const Frames& frames, Index s) const {
+EdgeGeometry::TouchAt EdgeGeometry::touch(const StencilRequest&, const SurfaceFrames& frames, Index s) const {
   TouchAt out;
   out.edges = gap(s, frames.lag);
   out.share = out.edges.weight;
@@ -26,12 +26,12 @@ EdgeContactPool::TouchAt EdgeContactPool::touch(const StencilRequest&, const Fra
   return out;
 }
 
-class EdgeContactPool::Rates {
+class EdgeGeometry::Rates {
  public:
-  Rates(const EdgeContactPool& pool, const StencilRequest& q, const Frames& frames, Index s,
+  Rates(const EdgeGeometry& geometry, const StencilRequest& q, const SurfaceFrames& frames, Index s,
         const TouchAt& touch)
-      : rates_(edge_rates(pool.places(s, frames.lag), touch.edges)) {
-    const auto nodes = pool.nodes_[s];
+      : rates_(edge_rates(geometry.places(s, frames.lag), touch.edges)) {
+    const auto nodes = geometry.nodes_[s];
     for (std::size_t k = 1; k < kEdgeNodes; ++k)
       way_[k] = frames.lag[at(nodes[k])] - frames.lag[at(nodes[0])];
     for (std::size_t a = 0; a < kPairNodes && !q.increment.before.empty(); ++a)
@@ -67,11 +67,11 @@ class EdgeContactPool::Rates {
   std::size_t node_ = 0;                // that moves
 };
 
-EdgeContactPool::Rates EdgeContactPool::rates(const StencilRequest& q, const Frames& frames, Index s,
-                                              const TouchAt& touch) const {
+EdgeGeometry::Rates EdgeGeometry::rates(const StencilRequest& q, const SurfaceFrames& frames, Index s,
+                                        const TouchAt& touch) const {
   return {*this, q, frames, s, touch};
 }
 
-template class FrictionalPool<EdgeContactPool>;
+template class FrictionalPool<EdgeGeometry>;
 
 }  // namespace isochor

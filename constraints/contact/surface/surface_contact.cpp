@@ -46,13 +46,13 @@ class SurfaceContactInstance final : public EffectInstance {
     const bool between = !pool.setup().surface->single();  // within a body forces cancel
     ContactTotals sum;
     for (Index s = 0; s < pool.stencils(); ++s) {
-      if (!pool.meets(s)) continue;
-      const PatchPoint near = pool.nearest(s, c.state.x);
+      if (!pool.geometry().meets(s)) continue;
+      const PatchPoint near = pool.geometry().nearest(s, c.state.x);
       if (!std::isfinite(near.distance)) continue;
       sum.gap = std::min(sum.gap, near.distance - pool.setup().offset);
       const double l = -lambda[at(s)];
       if (!(l > 0)) continue;
-      const Vec3 pull = pool.kept_pull(s, memory, c.state.x);
+      const Vec3 pull = pool.kept_pull(SurfaceFrames{c.state.x, c.state.x}, s, memory);
       const double sign = points[at(s)].side == 0 ? 1 : -1;
       if (between) sum.force += sign * (l * near.normal - pull);
       sum.normal += l;
@@ -91,8 +91,8 @@ class SurfaceContactInstance final : public EffectInstance {
       all_size[at(place.first)] += area[1];
     }
     for (Index s = 0; s < pool.stencils(); ++s) {
-      if (!pool.meets(s)) continue;
-      const PatchPoint near = pool.nearest(s, c.state.x);
+      if (!pool.geometry().meets(s)) continue;
+      const PatchPoint near = pool.geometry().nearest(s, c.state.x);
       if (!std::isfinite(near.distance)) continue;
       // Of the sheets that something is close to.
       for (std::size_t k = 0; k < points[at(s)].nodes; ++k) {
@@ -103,10 +103,10 @@ class SurfaceContactInstance final : public EffectInstance {
       }
       const double l = -lambda[at(s)];
       if (!(l > 0)) continue;
-      const Vec3 pull = pool.kept_pull(s, memory, c.state.x);
+      const Vec3 pull = pool.kept_pull(SurfaceFrames{c.state.x, c.state.x}, s, memory);
       const auto nodes = pool.nodes()[s];
       for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const double share = pool.share(s, i, near);
+        const double share = pool.geometry().share(s, i, near);
         f.normal[at(nodes[i])] += (i < points[at(s)].nodes ? l : -l) * share;
         f.tangential[at(nodes[i])] -= share * pull;
       }
@@ -221,7 +221,8 @@ class SurfaceContactEffect final : public EffectSource {
     const ContactSurface& surface = *pool.setup().surface;
     std::vector<double> gap(rows.area.size(), pool.setup().open);
     for (Index s = 0; s < pool.stencils(); ++s) {
-      if (pool.meets(s)) gap[at(s)] = pool.nearest(s, builder.rest()).distance - def_.thickness;
+      if (pool.geometry().meets(s))
+        gap[at(s)] = pool.geometry().nearest(s, builder.rest()).distance - def_.thickness;
     }
     // In the groove between two flanks of one body facets are a little below each other.
     const Overlap found =

@@ -15,74 +15,16 @@ double norm(const Vec3& v) {
 
 }  // namespace
 
-SurfaceContactPool::SurfaceContactPool(std::shared_ptr<const Setup> setup, std::vector<Index> center)
-    : FrictionalPool(setup->name, {setup->friction, 1}, setup->coupled),
-      setup_(std::move(setup)),
-      center_(std::move(center)) {
-  const ContactSurface& surface = *setup_->surface;
-  patch_.resize(center_.size());
-  for (Index s = 0; s < static_cast<Index>(center_.size()); ++s) {
-    std::array<Index, kMost> nodes{};
-    std::size_t count = 0;
-    if (center_[at(s)] >= 0) {
-      const SurfacePoint& point = surface.points()[at(s)];
-      for (std::size_t k = 0; k < point.nodes; ++k) nodes[count++] = point.node[k];
-      const ContactSurface::Around around = surface.around(center_[at(s)], s);
-      for (std::size_t k = 0; k < around.patch.nodes; ++k) nodes[count++] = around.node[k];
-      patch_[at(s)] = around.patch;
-      for (const Index corner : surface.corners(surface.triangles_at(s)[0])) {
-        const auto end = nodes.begin() + static_cast<std::ptrdiff_t>(count);
-        if (couples() && std::find(nodes.begin(), end, corner) == end) nodes[count++] = corner;
-      }
-    }
-    nodes_.push(std::span(nodes).first(count));
-  }
-  finish_topology();
-}
-
-PatchPoint SurfaceContactPool::nearest(Index s, std::span<const Vec3> x) const {
-  const SurfacePoint& point = setup_->surface->points()[at(s)];
-  const auto nodes = nodes_[s].subspan(point.nodes, patch_[at(s)].nodes);
-  std::array<Vec3, kPatchNodes> corner{};
-  for (std::size_t k = 0; k < nodes.size(); ++k) corner[k] = x[at(nodes[k])];
-  return nearest_on_patch(point.position(x), std::span(corner).first(nodes.size()), patch_[at(s)]);
-}
-
-double SurfaceContactPool::share(Index s, std::size_t i, const PatchPoint& near) const {
-  const SurfacePoint& point = setup_->surface->points()[at(s)];
-  if (i >= gap_nodes(s)) return 0;
-  return i < point.nodes ? point.weight[i] : -near.weight[i - point.nodes];
-}
-
-SurfaceContactPool::Gap SurfaceContactPool::gap_at(const Frames& frames, Index s, Want want) const {
-  Gap gap;
-  gap.near = nearest(s, frames.now);
-  gap.exists = std::isfinite(gap.near.distance);
-  gap.value = gap.exists ? gap.near.distance - setup_->offset : setup_->open;
-  if (want == Want::value) return gap;
-  for (std::size_t i = 0; i < gap_nodes(s); ++i) gap.weight[i] = share(s, i, gap.near);
-  return gap;
-}
-
-void SurfaceContactPool::add_curvature(const StencilRequest& q, const Frames&, const Gap& gap, Index s,
-                                       Mat3* blocks) const {
-  const double multiplier = q.function_multiplier[at(s)];
-  if (multiplier == 0 || !gap.exists) return;
-  add_patch_curvature(gap.near, multiplier, q.definiteness != Definiteness::exact,
-                      std::span(gap.weight).first(gap_nodes(s)), setup_->surface->points()[at(s)].nodes,
-                      blocks);
-}
-
 void SurfaceContactPool::accept(const StencilRequest& q, std::span<double> memory) const {
-  keep_pairs(center_, friction_memory().per_point(), memory);
+  keep_pairs(geometry().center(), friction_memory().per_point(), memory);
   FrictionalPool::accept(q, memory);
 }
 
 PatchPoint SurfaceContactPool::seen_from(Index s, Index center, std::span<const Vec3> x) const {
-  const ContactSurface::Around around = setup_->surface->around(center, s);
+  const ContactSurface::Around around = setup().surface->around(center, s);
   std::array<Vec3, kPatchNodes> corner{};
   for (std::size_t k = 0; k < around.patch.nodes; ++k) corner[k] = x[at(around.node[k])];
-  return nearest_on_patch(setup_->surface->points()[at(s)].position(x),
+  return nearest_on_patch(setup().surface->points()[at(s)].position(x),
                           std::span(corner).first(around.patch.nodes), around.patch);
 }
 
@@ -91,7 +33,7 @@ PatchPoint SurfaceContactPool::seen_from(Index s, Index center, std::span<const 
 bool SurfaceContactPool::reaches_out(const PatchPoint& near, Index s, Index center,
                                      std::span<const Vec3> x) const {
   constexpr double flat = 0.999;  // cosine of 2.5 degrees
-  const ContactSurface::Around around = setup_->surface->around(center, s);
+  const ContactSurface::Around around = setup().surface->around(center, s);
   const auto normal = [&](const std::array<std::uint8_t, 3>& c) {
     const Vec3 a = x[at(around.node[c[0]])];
     return cross(x[at(around.node[c[1]])] - a, x[at(around.node[c[2]])] - a);
@@ -106,15 +48,16 @@ bool SurfaceContactPool::reaches_out(const PatchPoint& near, Index s, Index cent
 }
 
 Renewal SurfaceContactPool::renewed(const RenewalRequest& q) const {
-  const ContactSurface& surface = *setup_->surface;
+  const ContactSurface& surface = *setup().surface;
   const double deep = 0.5 * surface.size();
-  std::vector<ContactSurface::Finding> found(center_.size());
+  const std::vector<Index>& center = geometry().center();
+  std::vector<ContactSurface::Finding> found(center.size());
   const std::vector<Index> base =
-      q.memory.empty() ? center_ : pairs_in_memory(q.memory, friction_memory().per_point());
+      q.memory.empty() ? center : pairs_in_memory(q.memory, friction_memory().per_point());
   surface.search(q.from, q.x, reach(), base, q.parallel, found);
   Renewal answer;
   bool needed = false;
-  std::vector<Index> target(center_.size(), -1);
+  std::vector<Index> target(center.size(), -1);
   for (Index s = 0; s < stencils(); ++s) {
     const ContactSurface::Finding& f = found[at(s)];
     const Index c = base[at(s)];
@@ -130,13 +73,13 @@ Renewal SurfaceContactPool::renewed(const RenewalRequest& q) const {
         continue;
       }
       target[at(s)] = c;
-      if (q.solved && center_[at(s)] == c && nearest(s, q.x).distance >= 0) ++answer.passing;
+      if (q.solved && center[at(s)] == c && geometry().nearest(s, q.x).distance >= 0) ++answer.passing;
       continue;
     }
-    if (f.nearest < 0 && c >= 0 && center_[at(s)] == c) {
+    if (f.nearest < 0 && c >= 0 && center[at(s)] == c) {
       // Deeper than the search reaches; or beside, or turned away from, what it was close to.
-      const double present = nearest(s, q.x).distance;
-      const bool inside = present < setup_->offset;
+      const double present = geometry().nearest(s, q.x).distance;
+      const bool inside = present < setup().offset;
       if (present < -0.9 * reach() && surface.facing(s, c, q.x)) target[at(s)] = c;
       needed = needed || (inside && target[at(s)] != c);
     }
@@ -144,7 +87,7 @@ Renewal SurfaceContactPool::renewed(const RenewalRequest& q) const {
     // Beside a sharp edge the patch around it says that the point is outside; beyond a corner its planes may
     // be above a point that is not inside.
     const double distance = std::max(f.distance, seen_from(s, f.nearest, q.x).distance);
-    const double gap = distance - setup_->offset;
+    const double gap = distance - setup().offset;
     if (c < 0) {
       needed = needed || gap < (q.solved ? 0 : 0.4 * reach());
       continue;
@@ -152,22 +95,23 @@ Renewal SurfaceContactPool::renewed(const RenewalRequest& q) const {
     const PatchPoint here = seen_from(s, c, q.x);
     const bool differs = std::abs(distance - here.distance) > kSame * surface.size();
     if (q.solved)
-      needed = needed || (std::min(distance, here.distance) < setup_->offset && differs);
+      needed = needed || (std::min(distance, here.distance) < setup().offset && differs);
     else
       needed = needed || (gap < 0.4 * reach() && (differs || reaches_out(here, s, c, q.x)));
   }
   if (!needed) target = base;
-  if (target != center_) answer.pool = std::make_shared<SurfaceContactPool>(setup_, std::move(target));
+  if (target != center)
+    answer.pool = std::make_shared<SurfaceContactPool>(geometry().setup(), std::move(target));
   return answer;
 }
 
 Result<std::shared_ptr<const StencilPool>> SurfaceContactPool::restored(
     std::span<const double> memory) const {
-  auto kept = checked_pairs(memory, friction_memory().per_point(), setup_->surface->triangles(), setup_->name,
+  auto kept = checked_pairs(memory, friction_memory().per_point(), setup().surface->triangles(), setup().name,
                             "triangle");
   if (!kept) return Error{kept.error()};
   return std::shared_ptr<const StencilPool>(
-      std::make_shared<SurfaceContactPool>(setup_, std::move(kept).value()));
+      std::make_shared<SurfaceContactPool>(geometry().setup(), std::move(kept).value()));
 }
 
 }  // namespace isochor

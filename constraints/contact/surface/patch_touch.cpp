@@ -1,4 +1,4 @@
-// Where the points of SurfaceContactPool touch, and how that changes with what friction holds on to: the
+// Where points on a surface touch a patch, and how that changes with what friction holds on to: the
 // nearest place and the tangent plane there, and the triangle that the pull kept turns with.
 #include <algorithm>
 #include <cmath>
@@ -9,14 +9,14 @@
 namespace isochor {
 
 // Turn with the first triangle of the point.
-Mat3 SurfaceContactPool::axes(Index s, std::span<const Vec3> x) const {
+Mat3 PatchGeometry::axes(Index s, std::span<const Vec3> x) const {
   const auto& c = setup_->surface->corners(setup_->surface->triangles_at(s)[0]);
   const Vec3 u = x[at(c[1])] - x[at(c[0])], v = x[at(c[2])] - x[at(c[0])];
   return turning_axes(u, cross(u, v));
 }
 
-SurfaceContactPool::TouchAt SurfaceContactPool::touch(const StencilRequest&, const Frames& frames,
-                                                      Index s) const {
+PatchGeometry::TouchAt PatchGeometry::touch(const StencilRequest&, const SurfaceFrames& frames,
+                                            Index s) const {
   TouchAt out;
   out.near = nearest(s, frames.lag);
   out.share = std::isfinite(out.near.distance) ? 1 : 0;
@@ -25,15 +25,15 @@ SurfaceContactPool::TouchAt SurfaceContactPool::touch(const StencilRequest&, con
   return out;
 }
 
-class SurfaceContactPool::Rates {
+class PatchGeometry::Rates {
  public:
-  Rates(const SurfaceContactPool& pool, const StencilRequest& q, const Frames& frames, Index s,
+  Rates(const PatchGeometry& geometry, const StencilRequest& q, const SurfaceFrames& frames, Index s,
         const TouchAt& touch)
       : touch_(touch),
-        nodes_(pool.nodes_[s]),
-        corner_(pool.setup_->surface->corners(pool.setup_->surface->triangles_at(s)[0])),
-        first_(pool.setup_->surface->points()[at(s)].nodes),
-        end_(pool.gap_nodes(s)) {
+        nodes_(geometry.nodes_[s]),
+        corner_(geometry.setup_->surface->corners(geometry.setup_->surface->triangles_at(s)[0])),
+        first_(geometry.setup_->surface->points()[at(s)].nodes),
+        end_(geometry.gap_nodes(s)) {
     u_ = frames.lag[at(corner_[1])] - frames.lag[at(corner_[0])];
     v_ = frames.lag[at(corner_[2])] - frames.lag[at(corner_[0])];
     for (std::size_t a = 0; a < touch.near.dimensions && !q.increment.before.empty(); ++a) {
@@ -77,11 +77,11 @@ class SurfaceContactPool::Rates {
   PatchRate rate_;
 };
 
-SurfaceContactPool::Rates SurfaceContactPool::rates(const StencilRequest& q, const Frames& frames, Index s,
-                                                    const TouchAt& touch) const {
+PatchGeometry::Rates PatchGeometry::rates(const StencilRequest& q, const SurfaceFrames& frames, Index s,
+                                          const TouchAt& touch) const {
   return {*this, q, frames, s, touch};
 }
 
-template class FrictionalPool<SurfaceContactPool>;
+template class FrictionalPool<PatchGeometry>;
 
 }  // namespace isochor

@@ -1,4 +1,4 @@
-#include "constraints/contact/rigid/contact_pool.h"
+#include "constraints/contact/rigid/rigid_geometry.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -45,60 +45,40 @@ Mat3 made_definite(const Mat3& m, Definiteness policy) {
 
 }  // namespace
 
-ContactPool::ContactPool(std::string name, Obstacle shape, FrictionLaw friction,
-                         std::optional<ControlPoints> points, bool coupled)
-    : FrictionalPool(std::move(name), {friction}, coupled), shape_(std::move(shape)), points_(points) {}
-
-void ContactPool::add(Index node, double stick, double size, const Vec3& inset) {
+void RigidGeometry::add(Index node, double stick, double size, const Vec3& inset) {
   std::vector<Index> nodes = {node};
   if (points_) nodes.insert(nodes.end(), points_->node.begin(), points_->node.end());
   nodes_.push(nodes);
-  stick_.push_back(stick);
-  offset_.push_back(0);
-  size_.push_back(size);
-  inset_.push_back(inset);
-  rider_.emplace_back();
-  rider_own_.push_back({});
+  point_.push_back({stick, size, inset, 0, {}, {}});
 }
 
-void ContactPool::add(const ControlPoints& body, const Vec3& own, double offset, double stick) {
+void RigidGeometry::add(const ControlPoints& body, const Vec3& own, double offset, double stick) {
   std::vector<Index> nodes(body.node.begin(), body.node.end());
   if (points_) nodes.insert(nodes.end(), points_->node.begin(), points_->node.end());
   nodes_.push(nodes);
-  stick_.push_back(stick);
-  offset_.push_back(offset);
-  size_.push_back(0);
-  inset_.push_back({});
-  rider_.emplace_back(body);
-  rider_own_.push_back(own);
+  point_.push_back({stick, 0, {}, offset, body, own});
 }
 
-Vec3 ContactPool::point(Index s, std::span<const Vec3> x) const {
+Vec3 RigidGeometry::position(Index s, std::span<const Vec3> x) const {
   const auto nodes = nodes_[s];
-  const auto& rider = rider_[at(s)];
-  if (!rider) return x[at(nodes[0])];
+  const RigidPoint& point = point_[at(s)];
+  if (!point.rider) return x[at(nodes[0])];
   Vec3 p{};
-  for (std::size_t a = 0; a < 4; ++a) p += rider->weight(a, rider_own_[at(s)]) * x[at(nodes[a])];
+  for (std::size_t a = 0; a < 4; ++a) p += point.rider->weight(a, point.own) * x[at(nodes[a])];
   return p;
 }
 
-double ContactPool::gap(Index s, const ContactFrame& frame, std::span<const Vec3> x) const {
-  return distance_value(shape_, own_place(s, frame, x)) - offset_[at(s)];
-}
-
-// Weights of the nodes in the motion of the point relative to the shape, the point being at `own` in the
-// shape's axes.
-std::array<double, ContactPool::kMost> ContactPool::weights(Index s, const Vec3& own) const {
+std::array<double, RigidGeometry::kMost> RigidGeometry::weights(Index s, const Vec3& own) const {
   std::array<double, kMost> w{};
-  const auto& rider = rider_[at(s)];
-  const std::size_t count = rider ? 4 : 1;
+  const RigidPoint& point = point_[at(s)];
+  const std::size_t count = point.rider ? 4 : 1;
   w[0] = 1;
-  for (std::size_t a = 0; rider && a < 4; ++a) w[a] = rider->weight(a, rider_own_[at(s)]);
+  for (std::size_t a = 0; point.rider && a < 4; ++a) w[a] = point.rider->weight(a, point.own);
   for (std::size_t a = 0; points_ && a < 4; ++a) w[count + a] = -points_->weight(a, own);
   return w;
 }
 
-ContactPool::Frames ContactPool::frames(const StencilRequest& q) const {
+RigidGeometry::Frames RigidGeometry::frames(const StencilRequest& q) const {
   Frames f;
   f.x = q.x;
   f.now = frame(q.increment.t1, q.x);
@@ -107,11 +87,11 @@ ContactPool::Frames ContactPool::frames(const StencilRequest& q) const {
   return f;
 }
 
-ContactPool::Gap ContactPool::gap_at(const Frames& frames, Index s, Want want) const {
+RigidGeometry::Gap RigidGeometry::gap_at(const Frames& frames, Index s, Want want) const {
   Gap gap;
   gap.own = own_place(s, frames.now, frames.x);
   gap.distance = distance_to(shape_, gap.own);
-  gap.value = gap.distance.value - offset_[at(s)];
+  gap.value = gap.distance.value - point_[at(s)].offset;
   if (want == Want::value) return gap;
   gap.normal = transposed_times(frames.now.inverse, gap.distance.normal);
   gap.weight = weights(s, gap.own);
@@ -120,8 +100,8 @@ ContactPool::Gap ContactPool::gap_at(const Frames& frames, Index s, Want want) c
 
 // multiplier times the second derivative of the gap. From A dy = dp - sum w_a dx_a, w_a affine in y, comes
 // A d2y = -2 dA dy, so beside the curvature of the shape there are cross terms with its control points.
-void ContactPool::add_curvature(const StencilRequest& q, const Frames& frames, const Gap& gap, Index s,
-                                Mat3* blocks) const {
+void RigidGeometry::add_curvature(const StencilRequest& q, const Frames& frames, const Gap& gap, Index s,
+                                  Mat3* blocks) const {
   const Mat3& inverse = frames.now.inverse;
   const double multiplier = q.function_multiplier[at(s)];
   double factor = multiplier;
@@ -135,7 +115,7 @@ void ContactPool::add_curvature(const StencilRequest& q, const Frames& frames, c
     factor = 1;
   }
   const auto& c = gap.weight;
-  const std::size_t n = nodes_[s].size(), first = rider_[at(s)] ? 4 : 1;
+  const std::size_t n = nodes_[s].size(), first = point_[at(s)].rider ? 4 : 1;
   // The cross terms are indefinite: left out where a definite matrix is asked for.
   const bool cross_terms = points_ && q.definiteness == Definiteness::exact;
   for (std::size_t i = 0; i < n; ++i) {
