@@ -102,7 +102,9 @@ std::array<Vec3, 2> World::reaction(EffectId effect) const {
   std::array<Vec3, 2> sum{};
   Impl& w = *impl_;
   const auto i = static_cast<std::size_t>(effect);
-  if (!w.compile() || i >= w.held_by.size()) return sum;
+  if (!w.compile()) return sum;
+  if (i < w.instances.size()) sum = w.instances[i]->reaction({w.system(), w.state});
+  if (i >= w.held_by.size()) return sum;
   for (const HeldDirection& h : w.held_by[i]) {
     const Vec3 f = dot(h.direction, w.state.reactions[at(h.node)]) * h.direction;
     sum[0] += f;
