@@ -1,10 +1,17 @@
 # METIS: imported target METIS::METIS.
 find_path(METIS_INCLUDE_DIR metis.h)
 find_library(METIS_LIBRARY metis)
+# A program that links our static libraries needs no header of this one.
+set(_METIS_needs METIS_LIBRARY)
+if(NOT ISOCHOR_FIND_LIBRARIES_ONLY)
+  list(APPEND _METIS_needs METIS_INCLUDE_DIR)
+endif()
 include(FindPackageHandleStandardArgs)
-find_package_handle_standard_args(METIS REQUIRED_VARS METIS_LIBRARY METIS_INCLUDE_DIR)
+find_package_handle_standard_args(METIS REQUIRED_VARS ${_METIS_needs})
 if(METIS_FOUND AND NOT TARGET METIS::METIS)
   add_library(METIS::METIS UNKNOWN IMPORTED)
-  set_target_properties(METIS::METIS PROPERTIES IMPORTED_LOCATION ${METIS_LIBRARY}
-                        INTERFACE_INCLUDE_DIRECTORIES ${METIS_INCLUDE_DIR})
+  set_target_properties(METIS::METIS PROPERTIES IMPORTED_LOCATION ${METIS_LIBRARY})
+  if(METIS_INCLUDE_DIR)
+    set_target_properties(METIS::METIS PROPERTIES INTERFACE_INCLUDE_DIRECTORIES ${METIS_INCLUDE_DIR})
+  endif()
 endif()

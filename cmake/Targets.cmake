@@ -1,5 +1,6 @@
-# One static library a module; isochor::isochor is all that a host needs. Effects are object files in an archive, so a
-# host links only those it names.
+# One static library a module; isochor::isochor is all that a host needs, isochor::core the same without mesh files.
+# Effects are object files in an archive, so a host links only those it names. With BUILD_SHARED_LIBS a host gets
+# one libisochor.so made of the same object files; our own programs and tests, which see the inside, link the modules.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -20,16 +21,31 @@ function(isochor_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
+# What the public headers say, as a number (isochor/abi.h).
+set(ISOCHOR_GENERATED_INCLUDE ${PROJECT_BINARY_DIR}/include)
+file(GLOB_RECURSE _public_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/isochor/*.h)
+add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/abi.stamp
+  BYPRODUCTS ${ISOCHOR_GENERATED_INCLUDE}/isochor/abi.h
+  COMMAND ${CMAKE_COMMAND} -DINCLUDE=${PROJECT_SOURCE_DIR}/include
+    -DOUTPUT=${ISOCHOR_GENERATED_INCLUDE}/isochor/abi.h -P ${PROJECT_SOURCE_DIR}/cmake/Abi.cmake
+  COMMAND ${CMAKE_COMMAND} -E touch ${PROJECT_BINARY_DIR}/abi.stamp
+  DEPENDS ${_public_headers} ${PROJECT_SOURCE_DIR}/cmake/Abi.cmake
+  COMMENT "Numbering the public headers" VERBATIM)
+add_custom_target(isochor_abi DEPENDS ${PROJECT_BINARY_DIR}/abi.stamp)
+
+set(_public_include $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<BUILD_INTERFACE:${ISOCHOR_GENERATED_INCLUDE}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+
 # isochor_module(name sources...): a static library with the include layout of the tree.
 function(isochor_module name)
   add_library(isochor_${name} STATIC ${ARGN})
   add_library(isochor::${name} ALIAS isochor_${name})
-  target_include_directories(isochor_${name}
-    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
-    PRIVATE ${PROJECT_SOURCE_DIR})
+  add_dependencies(isochor_${name} isochor_abi)
+  target_include_directories(isochor_${name} PUBLIC ${_public_include} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_features(isochor_${name} PUBLIC cxx_std_20)
   target_link_libraries(isochor_${name} PRIVATE $<BUILD_INTERFACE:isochor_options>)
-  set_target_properties(isochor_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(isochor_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
+    CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   set_property(GLOBAL APPEND PROPERTY ISOCHOR_MODULES isochor_${name})
 endfunction()
 
@@ -46,13 +62,17 @@ isochor_sources(_base engine/base)
 isochor_module(base ${_base})
 target_link_libraries(isochor_base PRIVATE TBB::tbb)
 
-isochor_sources(_mesh engine/mesh engine/mesh/read engine/mesh/check engine/mesh/write engine/mesh/make)
+isochor_sources(_mesh engine/mesh engine/mesh/check engine/mesh/make)
 isochor_module(mesh ${_mesh})
-target_link_libraries(isochor_mesh PUBLIC isochor_base PRIVATE pugixml::pugixml ZLIB::ZLIB)
+target_link_libraries(isochor_mesh PUBLIC isochor_base)
+
+isochor_sources(_mesh_files engine/mesh/read engine/mesh/write)
+isochor_module(mesh_files ${_mesh_files})
+target_link_libraries(isochor_mesh_files PUBLIC isochor_mesh PRIVATE pugixml::pugixml ZLIB::ZLIB)
 
 isochor_sources(_solvers engine/solvers engine/solvers/front engine/solvers/iterative engine/solvers/foreign)
 isochor_module(solvers ${_solvers})
-target_link_libraries(isochor_solvers PRIVATE Eigen3::Eigen Threads::Threads ${CMAKE_DL_LIBS})
+target_link_libraries(isochor_solvers PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen> Threads::Threads ${CMAKE_DL_LIBS})
 foreach(backend MUMPS CHOLMOD METIS)
   if(ISOCHOR_HAVE_${backend})
     target_compile_definitions(isochor_solvers PRIVATE ISOCHOR_HAVE_${backend})
@@ -77,35 +97,95 @@ isochor_sources(_engine engine/math engine/system engine/elements engine/solve e
 isochor_module(engine ${_engine})
 # Square roots set no errno, so that they are taken eight at a time.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/engine/math/svd3.cpp PROPERTIES COMPILE_OPTIONS -fno-math-errno)
-target_link_libraries(isochor_engine PUBLIC isochor_mesh isochor_solvers PRIVATE Eigen3::Eigen TBB::tbb)
+target_link_libraries(isochor_engine PUBLIC isochor_mesh isochor_solvers PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen> TBB::tbb)
 
 isochor_sources(_materials materials)
 isochor_module(materials ${_materials})
-target_link_libraries(isochor_materials PUBLIC isochor_engine PRIVATE Eigen3::Eigen)
+target_link_libraries(isochor_materials PUBLIC isochor_engine PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>)
 
 isochor_sources(_constraints constraints/stencil constraints/volume constraints/chamber constraints/layer
   constraints/line constraints/support constraints/load constraints/contact constraints/contact/friction
   constraints/contact/shape constraints/contact/rigid constraints/contact/surface)
 isochor_module(constraints ${_constraints})
-target_link_libraries(isochor_constraints PUBLIC isochor_engine PRIVATE Eigen3::Eigen)
+target_link_libraries(isochor_constraints PUBLIC isochor_engine PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>)
 
 isochor_sources(_integrators integrators)
 isochor_module(integrators ${_integrators})
 target_link_libraries(isochor_integrators PUBLIC isochor_engine)
 
-add_library(isochor INTERFACE)
-add_library(isochor::isochor ALIAS isochor)
-target_link_libraries(isochor INTERFACE isochor_materials isochor_constraints isochor_integrators isochor_engine)
-set_property(GLOBAL APPEND PROPERTY ISOCHOR_MODULES isochor)
+# All modules, for our own programs and tests.
+add_library(isochor_modules INTERFACE)
+target_link_libraries(isochor_modules INTERFACE isochor_materials isochor_constraints isochor_integrators isochor_engine
+                                                isochor_mesh_files)
 
 get_property(_modules GLOBAL PROPERTY ISOCHOR_MODULES)
-install(TARGETS ${_modules} EXPORT isochor-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+set(ISOCHOR_SHARED OFF)
+if(BUILD_SHARED_LIBS)
+  set(ISOCHOR_SHARED ON)
+  set(_objects)
+  foreach(module ${_modules})
+    list(APPEND _objects $<TARGET_OBJECTS:${module}>)
+  endforeach()
+  add_library(isochor SHARED ${_objects})
+  set_target_properties(isochor PROPERTIES LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION}
+    SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  target_compile_features(isochor PUBLIC cxx_std_20)
+  target_include_directories(isochor PUBLIC ${_public_include})
+  set(_private TBB::tbb Threads::Threads pugixml::pugixml ZLIB::ZLIB ${CMAKE_DL_LIBS})
+  foreach(backend MUMPS CHOLMOD METIS)
+    if(ISOCHOR_HAVE_${backend})
+      list(APPEND _private ${backend}::${backend})
+    endif()
+  endforeach()
+  target_link_libraries(isochor PRIVATE "$<BUILD_INTERFACE:${_private}>")
+  add_library(isochor_core INTERFACE)
+  target_link_libraries(isochor_core INTERFACE isochor)
+  set(_core isochor isochor_core)
+  set(_files)
+else()
+  add_library(isochor_core INTERFACE)
+  target_link_libraries(isochor_core INTERFACE isochor_materials isochor_constraints isochor_integrators isochor_engine)
+  add_library(isochor INTERFACE)
+  target_link_libraries(isochor INTERFACE isochor_core isochor_mesh_files)
+  set(_core ${_modules} isochor_core)
+  list(REMOVE_ITEM _core isochor_mesh_files)
+  set(_files isochor_mesh_files isochor)
+endif()
+set_target_properties(isochor_core PROPERTIES EXPORT_NAME core)
+
+# For effects, materials and time schemes of one's own (docs/adding-a-constraint.md): the engine's extension headers,
+# under the names that they have here. They hold arithmetic for batches, which wants the engine's instructions.
+include(HeaderClosure)
+isochor_header_closure(_extension_headers engine/scene/builder.h engine/system/pool_facets.h engine/elements/material_model.h
+  engine/step/time_scheme.h materials/energy_batch.h)
+add_library(isochor_extend INTERFACE)
+target_link_libraries(isochor_extend INTERFACE isochor_core)
+target_include_directories(isochor_extend INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/isochor/extend>)
+target_compile_options(isochor_extend INTERFACE $<$<BOOL:${ISOCHOR_NATIVE}>:-march=native>)
+set_target_properties(isochor_extend PROPERTIES EXPORT_NAME extend)
+add_library(isochor::extend ALIAS isochor_extend)
+list(APPEND _core isochor_extend)
+add_library(isochor::isochor ALIAS isochor)
+add_library(isochor::core ALIAS isochor_core)
+
+set(_package ${CMAKE_INSTALL_LIBDIR}/cmake/isochor)
+install(TARGETS ${_core} EXPORT isochor-core ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT isochor-core NAMESPACE isochor:: DESTINATION ${_package})
+if(_files)
+  install(TARGETS ${_files} EXPORT isochor-files ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT isochor-files NAMESPACE isochor:: DESTINATION ${_package})
+endif()
 install(DIRECTORY include/isochor DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(EXPORT isochor-targets NAMESPACE isochor:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/isochor)
+foreach(header ${_extension_headers})
+  get_filename_component(folder ${header} DIRECTORY)
+  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/isochor/extend/${folder})
+endforeach()
+install(FILES ${ISOCHOR_GENERATED_INCLUDE}/isochor/abi.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/isochor)
 configure_package_config_file(cmake/isochor-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/isochor-config.cmake
-  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/isochor)
+  INSTALL_DESTINATION ${_package})
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/isochor-config-version.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/isochor-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/isochor-config-version.cmake
-  cmake/FindMUMPS.cmake cmake/FindMETIS.cmake cmake/FindCHOLMOD.cmake
-  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/isochor)
+  cmake/FindMUMPS.cmake cmake/FindMETIS.cmake cmake/FindCHOLMOD.cmake DESTINATION ${_package})

@@ -107,7 +107,7 @@ class WindingEffect final : public EffectSource {
     return check_thread(who(), def_.stiffness, def_.slack, true);
   }
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
-    if (!builder.has_body(def_.body)) return Error{who() + ": there is no such body"};
+    if (!builder.has_body(def_.body)) return Error{who() + ": " + builder.no_body(def_.body)};
     const BodyData& body = builder.body(def_.body);
     auto pool = std::make_shared<SegmentPool>(def_.name, false);
     for (const auto& path : def_.paths) {

@@ -59,7 +59,7 @@ Result<std::vector<Index>> surface_faces(const Builder& builder, BodyId id,
                                          std::span<const std::string> surfaces, const std::string& who) {
   if (!surfaces.empty()) return builder.faces(id, surfaces, who);
   if (!builder.has_body(id)) {
-    return Error{who + ": there is no body number " + std::to_string(static_cast<Index>(id))};
+    return Error{who + ": " + builder.no_body(id)};
   }
   return boundary_faces(builder.body(id));
 }

@@ -69,7 +69,6 @@ class HeldRows final : public RowPool, public TurningRows {
   RowFacets facets() const override { return {.turning = this}; }
   double turn(double t0, double t1) const override { return motion_->turn(t0, t1); }
   std::vector<Vec3> direction, point;  // of each row; rest positions [m]
-  std::vector<EmbeddedPoint> where;    // of each row
 
  private:
   std::string name_;
@@ -80,21 +79,14 @@ class DirichletInstance final : public EffectInstance {
  public:
   explicit DirichletInstance(std::shared_ptr<Amount> amount) : amount_(std::move(amount)) {}
   Amount* amount() override { return amount_.get(); }
-  std::array<Vec3, 2> reaction(const GaugeContext& c) const override {
-    std::array<Vec3, 2> sum{};
-    if (!rows) return sum;
-    const std::size_t first = at(c.system.first_row(row_pool));
-    for (std::size_t r = 0; r < rows->direction.size(); ++r) {
-      const Vec3 force = -c.state.lambda[first + r] * rows->direction[r];
-      sum[0] += force;
-      sum[1] += cross(rows->where[r].at(c.state.x), force);
-    }
-    return sum;
-  }
-  // Supports by rows report their force as a gauge, too.
+  // Supports by rows report their force themselves; what is eliminated has reactions.
   void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
     if (!rows) return;
-    const Vec3 force = reaction(c)[0];
+    Vec3 force{};
+    const std::size_t first = at(c.system.first_row(row_pool));
+    for (std::size_t r = 0; r < rows->direction.size(); ++r) {
+      force -= c.state.lambda[first + r] * rows->direction[r];
+    }
     for (int k = 0; k < 3; ++k) {
       out.push_back(
           {std::string(rows->name()), "dirichlet", std::string("force_") + "xyz"[k], "N", force[k]});
@@ -201,7 +193,7 @@ class DirichletEffect final : public EffectSource {
   Result<void> add_rows(Builder& builder, const std::vector<Index>& nodes,
                         const std::vector<Vec3>& directions, const std::shared_ptr<const Motion>& motion,
                         DirichletInstance& instance) const {
-    if (!builder.has_body(def_.where.body)) return Error{who() + "there is no such body"};
+    if (!builder.has_body(def_.where.body)) return Error{who() + builder.no_body(def_.where.body)};
     const BodyData& body = builder.body(def_.where.body);
     std::vector<EmbeddedPoint> points;
     for (const Index node : nodes) {
@@ -231,7 +223,6 @@ class DirichletEffect final : public EffectSource {
         add_point_row(*rows, static_cast<Index>(p), k, compliance, 1 / (stiffest(body) * length), length);
         rows->direction.push_back(frame[static_cast<std::size_t>(k)]);
         rows->point.push_back(points[p].at(builder.rest()));
-        rows->where.push_back(points[p]);
       }
     }
     // Springs are condensed by default: their stiffness goes into the matrix, no unknowns are added.

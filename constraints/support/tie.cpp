@@ -56,7 +56,7 @@ class TieEffect final : public EffectSource {
     auto nodes = builder.select(def_.where, def_.name);
     if (!nodes) return Error{nodes.error()};
     if (!builder.has_body(def_.to)) {
-      return Error{who() + ": there is no body number " + std::to_string(static_cast<Index>(def_.to))};
+      return Error{who() + ": " + builder.no_body(def_.to)};
     }
     const BodyData& to = builder.body(def_.to);
     const double mu = std::max(stiffest(to), stiffest(builder.body(def_.where.body)));

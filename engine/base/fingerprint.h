@@ -29,6 +29,8 @@ class Fingerprint {
   void one(const T& v) {
     if constexpr (requires { v.describe(*this); }) {
       v.describe(*this);
+    } else if constexpr (requires { v.number(); }) {
+      hash_.add(static_cast<std::uint64_t>(v.number()));  // an id: whose it is says nothing about a scene
     } else if constexpr (std::is_floating_point_v<T>) {
       const double d = v == 0 ? 0.0 : static_cast<double>(v);  // of both signs
       hash_.add(&d, sizeof d);

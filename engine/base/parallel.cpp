@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <functional>
 
 namespace isochor {
 
@@ -38,6 +39,17 @@ void TbbParallel::run(Index n, Index grain, RangeBody body) const {
         },
         tbb::simple_partitioner());
   });
+}
+
+void HostParallel::run(Index n, Index grain, RangeBody body) const {
+  if (n <= 0) return;
+  const Index chunks = (n + grain - 1) / grain;
+  const auto chunk = [&](Index c) { body(c * grain, std::min(n, (c + 1) * grain)); };
+  if (chunks == 1 || pool_->threads() == 1) {
+    for (Index c = 0; c < chunks; ++c) chunk(c);
+  } else {
+    pool_->parallel_for(chunks, std::ref(chunk));  // a reference: std::function allocates nothing for it
+  }
 }
 
 double ordered_sum(std::span<const double> terms) {

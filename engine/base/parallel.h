@@ -1,9 +1,11 @@
 // Parallel loops over index ranges. A loop body is passed as two pointers, so a call allocates nothing.
 #pragma once
 
+#include <memory>
 #include <type_traits>
 
 #include "engine/base/base.h"
+#include "isochor/host.h"
 
 namespace isochor {
 
@@ -41,6 +43,17 @@ class TbbParallel final : public Parallel {
   struct Arena;
   Arena* arena_;
   int threads_;
+};
+
+// The threads of the host.
+class HostParallel final : public Parallel {
+ public:
+  explicit HostParallel(std::shared_ptr<ThreadPool> pool) : pool_(std::move(pool)) {}
+  int threads() const override { return pool_->threads(); }
+  void run(Index n, Index grain, RangeBody body) const override;
+
+ private:
+  std::shared_ptr<ThreadPool> pool_;
 };
 
 // Sum of n terms in an order that depends on n alone: blocks of fixed size, then the blocks in turn.

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "engine/math/svd3.h"
+#include "isochor/export.h"
 
 namespace isochor {
 
@@ -21,16 +22,16 @@ struct Spectrum {
 struct InvariantHessian {
   Lanes I, F, G, H, FG;
 };
-void set_invariant(const Svd3& svd, const InvariantHessian& gamma, Spectrum& out);
+ISOCHOR_API void set_invariant(const Svd3& svd, const InvariantHessian& gamma, Spectrum& out);
 
 // Adds gamma_G g g^T + gamma_H H: what a function of J alone contributes, a volume row with its multiplier
 // among them.
-void add_volume(const Svd3& svd, const Lanes& G, const Lanes& H, Spectrum& spectrum);
+ISOCHOR_API void add_volume(const Svd3& svd, const Lanes& G, const Lanes& H, Spectrum& spectrum);
 
 // Negative eigenvalues raised to zero, or turned positive, as the policy says; `exact` changes nothing.
-void make_definite(Definiteness policy, Spectrum& spectrum);
+ISOCHOR_API void make_definite(Definiteness policy, Spectrum& spectrum);
 
 // The 9x9 matrix: lower triangle packed, A[i (i + 1) / 2 + j], j <= i, rows as F[3 i + j].
-void assemble(const Svd3& svd, const Spectrum& spectrum, Lanes A[45]);
+ISOCHOR_API void assemble(const Svd3& svd, const Spectrum& spectrum, Lanes A[45]);
 
 }  // namespace isochor

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/math/lanes.h"
+#include "isochor/export.h"
 
 namespace isochor {
 
@@ -13,10 +14,10 @@ struct Svd3 {
 
 // One-sided Jacobi rotations: singular values and vectors to a few units of rounding of the largest one,
 // small singular values of well-scaled columns to full relative accuracy. The identity comes out exactly.
-void svd3(const Lanes F[9], Svd3& out);
+ISOCHOR_API void svd3(const Lanes F[9], Svd3& out);
 
 // Eigenvalues and eigenvectors (columns of Q, row-major) of symmetric matrices, packed 00, 11, 22, 01, 02,
 // 12.
-void symmetric_eigen3(const Lanes S[6], Lanes values[3], Lanes Q[9]);
+ISOCHOR_API void symmetric_eigen3(const Lanes S[6], Lanes values[3], Lanes Q[9]);
 
 }  // namespace isochor

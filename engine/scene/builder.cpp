@@ -336,8 +336,7 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
 
 Result<std::vector<std::size_t>> Builder::regions(BodyId id, std::span<const std::string> names,
                                                   const std::string& who) const {
-  if (!has_body(id))
-    return Error{who + ": there is no body number " + std::to_string(static_cast<Index>(id))};
+  if (!has_body(id)) return Error{who + ": " + no_body(id)};
   const BodyData& b = body(id);
   std::vector<std::size_t> found;
   std::vector<std::string> known;
@@ -369,8 +368,7 @@ static void drop_repeated_faces(std::vector<Index>& faces, std::size_t per) {
 
 Result<std::vector<Index>> Builder::faces(BodyId id, std::span<const std::string> surfaces,
                                           const std::string& who) const {
-  if (!has_body(id))
-    return Error{who + ": there is no body number " + std::to_string(static_cast<Index>(id))};
+  if (!has_body(id)) return Error{who + ": " + no_body(id)};
   const BodyData& b = body(id);
   std::vector<std::string> known;
   for (const auto& s : b.mesh.surfaces) known.push_back(s.name);
@@ -389,8 +387,7 @@ Result<std::vector<Index>> Builder::faces(BodyId id, std::span<const std::string
 }
 
 Result<std::vector<Index>> Builder::select(const Selection& s, const std::string& who) const {
-  if (!has_body(s.body))
-    return Error{who + ": there is no body number " + std::to_string(static_cast<Index>(s.body))};
+  if (!has_body(s.body)) return Error{who + ": " + no_body(s.body)};
   const BodyData& b = body(s.body);
   std::vector<Index> found;
   if (!s.surfaces.empty()) {

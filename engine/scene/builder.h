@@ -9,10 +9,12 @@
 
 #include "engine/elements/material_model.h"
 #include "engine/elements/reference_element.h"
+#include "engine/scene/ids.h"
 #include "engine/system/state.h"
 #include "engine/system/system.h"
 #include "isochor/bodies.h"
 #include "isochor/curves.h"
+#include "isochor/export.h"
 #include "isochor/ids.h"
 #include "isochor/measures.h"
 #include "isochor/selection.h"
@@ -23,7 +25,7 @@ class Builder;
 
 // An amount over time: the curve of its definition until a host sets a value, which then ramps in over one
 // increment.
-class Amount {
+class ISOCHOR_API Amount {
  public:
   explicit Amount(Curve curve) : curve_(std::move(curve)) {}
   double value(double t) const;
@@ -65,12 +67,6 @@ class EffectInstance {
   virtual void gauges(const GaugeContext& context, std::vector<Gauge>& out) const {
     (void)context;
     (void)out;
-  }
-  // Force and moment about the origin by which it holds bodies with rows of its own; what prescribes
-  // coordinates has residuals for that.
-  virtual std::array<Vec3, 2> reaction(const GaugeContext& context) const {
-    (void)context;
-    return {};
   }
   // Pressure multipliers that live at nodes, by scene node [Pa]; others are left as they are.
   virtual void node_multipliers(const GaugeContext& context, std::span<double> pressure) const {
@@ -158,15 +154,18 @@ struct HeldDirection {
   Vec3 direction{};
 };
 
-class Builder {
+class ISOCHOR_API Builder {
  public:
   // Bodies first.
   Result<void> add_body(const BodyDef& def);
   Index body_count() const { return static_cast<Index>(bodies_.size()); }
   const BodyData& body(BodyId id) const { return bodies_[static_cast<std::size_t>(id)]; }
-  bool has_body(BodyId id) const {
-    return static_cast<Index>(id) >= 0 && static_cast<Index>(id) < body_count();
-  }
+  bool has_body(BodyId id) const { return find(id) == WorldNumbers::Found::here; }
+  // Why it has not: the end of a sentence.
+  std::string no_body(BodyId id) const { return why_not(find(id), "body", id.number(), body_count()); }
+  // The number of its world; 0: ids are not asked whose they are.
+  std::uint64_t world() const { return world_; }
+  void set_world(std::uint64_t number) { world_ = number; }
   std::span<const Vec3> rest() const { return parts_.rest; }
   double length() const;  // diagonal of the scene's box [m]
 
@@ -230,6 +229,11 @@ class Builder {
   const std::vector<BodyData>& bodies() const { return bodies_; }
 
  private:
+  // A definition that names no body is about the first.
+  WorldNumbers::Found find(BodyId id) const {
+    const auto found = WorldNumbers::look_up(id, body_count(), world_);
+    return found == WorldNumbers::Found::unsaid && body_count() > 0 ? WorldNumbers::Found::here : found;
+  }
   Result<void> add_regions(const BodyDef& def, BodyData& body) const;
   Result<void> build_region(BodyData& body, RegionData& region);
 
@@ -247,6 +251,7 @@ class Builder {
   std::string doubtful_units_;
   std::map<std::string, std::shared_ptr<void>> shared_;
   Index owner_ = -1;  // effect being built
+  std::uint64_t world_ = 0;
   bool consistent_mass_ = false;
   bool quasi_static_ = false;
 };

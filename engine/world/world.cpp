@@ -20,9 +20,15 @@ World& World::operator=(World&&) noexcept = default;
 World::~World() = default;
 
 Result<World> World::create(WorldOptions options, std::uint64_t abi) {
+  return create(std::move(options), {}, abi);
+}
+
+Result<World> World::create(WorldOptions options, Host host, std::uint64_t abi) {
   if (abi != kWorldAbi) {
-    return Error{"this program was built against headers of world version " + std::to_string(abi) +
-                 ", the library has version " + std::to_string(kWorldAbi) + "; rebuild the program"};
+    return Error{
+        "this program was built against other headers than the library, or with other settings of the "
+        "compiler (" +
+        std::to_string(abi) + ", not " + std::to_string(kWorldAbi) + "); rebuild the program"};
   }
   if (!options.scheme)
     return Error{
@@ -51,6 +57,10 @@ Result<World> World::create(WorldOptions options, std::uint64_t abi) {
     return Error{"world: threads = " + std::to_string(options.threads) +
                  "; give 0 (all) or a number up to 1024"};
   }
+  if (host.threads && host.threads->threads() < 1) {
+    return Error{"world: the host's thread pool has " + std::to_string(host.threads->threads()) +
+                 " threads; it must have at least one"};
+  }
   const Vec3& g = options.gravity;
   if (!std::isfinite(g.x) || !std::isfinite(g.y) || !std::isfinite(g.z)) {
     return Error{"world: gravity must be finite numbers"};
@@ -60,14 +70,20 @@ Result<World> World::create(WorldOptions options, std::uint64_t abi) {
         "world: the linear solver asked for is not part of this build; `isochor version` lists those that "
         "are"};
   }
-  return World(std::make_unique<Impl>(std::move(options)));
+  if (host.log) options.log = std::move(host.log);
+  std::unique_ptr<Parallel> parallel;
+  if (host.threads)
+    parallel = std::make_unique<HostParallel>(std::move(host.threads));
+  else
+    parallel = std::make_unique<TbbParallel>(options.threads);
+  return World(std::make_unique<Impl>(std::move(options), std::move(parallel)));
 }
 
 Result<BodyId> World::add_body(BodyDef body) {
   Impl& w = *impl_;
   if (w.compiled()) return Error{"body \"" + body.name + "\": bodies are added before the first step"};
   if (auto r = w.builder.add_body(body); !r) return Error{r.error()};
-  return static_cast<BodyId>(w.builder.body_count() - 1);
+  return WorldNumbers::make<BodyTag>(w.builder.body_count() - 1, w.builder.world());
 }
 
 Result<EffectId> World::add(EffectPtr effect) {
@@ -77,7 +93,37 @@ Result<EffectId> World::add(EffectPtr effect) {
     return Error{"effect \"" + effect->name() + "\": effects are added before the first step"};
   if (auto r = effect->check(); !r) return Error{r.error()};
   w.sources.push_back(std::move(effect));
-  return static_cast<EffectId>(static_cast<Index>(w.sources.size()) - 1);
+  return WorldNumbers::make<EffectTag>(static_cast<Index>(w.sources.size()) - 1, w.builder.world());
+}
+
+namespace {
+
+// The end of a sentence on an id that leads nowhere; empty where it leads to one of `count` things.
+template <class What>
+std::string no_such(const Id<What>& id, const std::string& thing, Index count, const Builder& builder) {
+  return why_not(WorldNumbers::look_up(id, count, builder.world()), thing, id.number(), count);
+}
+
+}  // namespace
+
+Result<void> World::check(BodyId body) const {
+  const std::string why = no_such(body, "body", impl_->builder.body_count(), impl_->builder);
+  if (why.empty()) return {};
+  return Error{why};
+}
+
+Result<void> World::check(EffectId effect) const {
+  const std::string why =
+      no_such(effect, "effect", static_cast<Index>(impl_->sources.size()), impl_->builder);
+  if (why.empty()) return {};
+  return Error{why};
+}
+
+const BodyData* World::Impl::find_body(BodyId body, const char* call) const {
+  const std::string why = no_such(body, "body", builder.body_count(), builder);
+  if (why.empty()) return &builder.body(body);
+  if (options.log) options.log(std::string(call) + ": " + why);
+  return nullptr;
 }
 
 Result<void> World::Impl::compile() {
@@ -174,8 +220,8 @@ void World::Impl::begin_state() {
   state.extra.assign(layout.size(), 0.0);
   system().start_memory(std::span(state.extra).first(layout.pools));
   data.emplace(system(), options, gravity_mass());
-  controller.emplace(StepContext{options, builder.bodies(), parallel, methods, *data, state, layout}, amounts,
-                     interrupt);
+  controller.emplace(StepContext{options, builder.bodies(), *parallel, methods, *data, state, layout},
+                     amounts, interrupt);
   controller->stepper().on_progress(progress);
 }
 
@@ -186,10 +232,8 @@ Result<void> World::compile() {
 Result<void> World::set_amount(EffectId effect, double amount) {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return r;
+  if (auto r = check(effect); !r) return Error{"set_amount: " + r.error()};
   const auto i = static_cast<std::size_t>(effect);
-  if (i >= w.instances.size()) {
-    return Error{"set_amount: there is no effect number " + std::to_string(static_cast<Index>(effect))};
-  }
   Amount* a = w.instances[i]->amount();
   if (!a) return Error{"set_amount: effect \"" + w.sources[i]->name() + "\" has no amount to set"};
   if (!std::isfinite(amount)) {

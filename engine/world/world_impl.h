@@ -14,14 +14,15 @@ struct ScenePart {
 };
 
 struct World::Impl {
-  explicit Impl(WorldOptions said)
-      : options(std::move(said)), parallel(options.threads), methods(options, parallel) {
+  Impl(WorldOptions said, std::unique_ptr<Parallel> threads)
+      : options(std::move(said)), parallel(std::move(threads)), methods(options, *parallel) {
+    builder.set_world(WorldNumbers::next_world());
     methods.set_interrupt([this] { return interrupt.raised(); });
   }
 
   // What the host said.
   WorldOptions options;
-  TbbParallel parallel;
+  std::unique_ptr<Parallel> parallel;
   Builder builder;
   std::vector<EffectPtr> sources;
   std::function<void(const ProgressInfo&)> progress;
@@ -42,6 +43,8 @@ struct World::Impl {
   std::optional<Controller> controller;
 
   bool compiled() const { return controller && methods.ready(); }
+  // Null, and a line in the log, where an id leads nowhere; `call` is who was asked.
+  const BodyData* find_body(BodyId body, const char* call) const;
   Result<void> compile();
   const System& system() const { return methods.system(); }
   Assembly& assembly() { return methods.chosen().assembly(); }

@@ -16,7 +16,7 @@ std::vector<Vec3> World::Impl::momenta() {
 
 BodyMeasures World::measures(BodyId body) const {
   Impl& w = *impl_;
-  if (!w.compile()) return {};
+  if (!w.find_body(body, "measures") || !w.compile()) return {};
   const BodyData& b = w.builder.body(body);
   BodyMeasures m = measure_body(b, w.system().parts(), w.state.x);
   m.name = b.name;

@@ -27,23 +27,29 @@ std::span<const Vec3> part(const BodyData& body, const std::vector<Vec3>& all) {
 }  // namespace
 
 std::span<const Vec3> World::positions(BodyId body) const {
-  const BodyData& b = impl_->builder.body(body);
-  return impl_->compiled() ? part(b, impl_->state.x) : std::span<const Vec3>(b.mesh.nodes);
+  const BodyData* b = impl_->find_body(body, "positions");
+  if (!b) return {};
+  return impl_->compiled() ? part(*b, impl_->state.x) : std::span<const Vec3>(b->mesh.nodes);
 }
 
 std::span<const Vec3> World::velocities(BodyId body) const {
-  if (!impl_->compiled()) return {};
-  return part(impl_->builder.body(body), impl_->state.v);
+  const BodyData* b = impl_->find_body(body, "velocities");
+  if (!b || !impl_->compiled()) return {};
+  return part(*b, impl_->state.v);
 }
 
 std::span<const Vec3> World::rest_positions(BodyId body) const {
-  return impl_->builder.body(body).mesh.nodes;
+  return mesh(body).nodes;
 }
 const Mesh& World::mesh(BodyId body) const {
-  return impl_->builder.body(body).mesh;
+  static const Mesh none;
+  const BodyData* b = impl_->find_body(body, "mesh");
+  return b ? b->mesh : none;
 }
 const std::string& World::body_name(BodyId body) const {
-  return impl_->builder.body(body).name;
+  static const std::string none;
+  const BodyData* b = impl_->find_body(body, "body_name");
+  return b ? b->name : none;
 }
 Index World::body_count() const {
   return impl_->builder.body_count();
@@ -77,7 +83,7 @@ std::vector<double> World::Impl::row_residuals() {
 
 BodyFields World::fields(BodyId body) const {
   Impl& w = *impl_;
-  if (!w.compile()) return {};
+  if (!w.find_body(body, "fields") || !w.compile()) return {};
   w.evaluate_state(Want::gradient);
   const SystemParts& parts = w.system().parts();
   std::vector<std::span<const double>> multipliers;
@@ -102,9 +108,8 @@ std::array<Vec3, 2> World::reaction(EffectId effect) const {
   std::array<Vec3, 2> sum{};
   Impl& w = *impl_;
   const auto i = static_cast<std::size_t>(effect);
-  if (!w.compile()) return sum;
-  if (i < w.instances.size()) sum = w.instances[i]->reaction({w.system(), w.state});
-  if (i >= w.held_by.size()) return sum;
+  if (auto r = check(effect); !r && w.options.log) w.options.log("reaction: " + r.error());
+  if (!check(effect) || !w.compile()) return sum;
   for (const HeldDirection& h : w.held_by[i]) {
     const Vec3 f = dot(h.direction, w.state.reactions[at(h.node)]) * h.direction;
     sum[0] += f;

@@ -28,9 +28,7 @@ Result<void> check_nodes(const char* call, const char* what, const BodyData& bod
 Result<void> World::set_velocities(BodyId body, std::span<const Vec3> velocities) {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return r;
-  if (!w.builder.has_body(body)) {
-    return Error{"set_velocities: there is no body number " + std::to_string(static_cast<Index>(body))};
-  }
+  if (auto r = check(body); !r) return Error{"set_velocities: " + r.error()};
   if (!w.options.scheme->has_inertia()) {
     return Error{"set_velocities: the scheme of this world is " + std::string(w.options.scheme->name()) +
                  ", in which nothing has a velocity; use a scheme of dynamics"};
@@ -47,9 +45,7 @@ Result<void> World::set_velocities(BodyId body, std::span<const Vec3> velocities
 Result<void> World::set_positions(BodyId body, std::span<const Vec3> positions) {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return r;
-  if (!w.builder.has_body(body)) {
-    return Error{"set_positions: there is no body number " + std::to_string(static_cast<Index>(body))};
-  }
+  if (auto r = check(body); !r) return Error{"set_positions: " + r.error()};
   w.controller->settled().reset();  // what a host sets is where it wants to go on from
   const BodyData& b = w.builder.body(body);
   if (auto r = check_nodes("set_positions", "positions", b, positions); !r) return r;

@@ -4,6 +4,8 @@
 #include <array>
 #include <vector>
 
+#include "isochor/export.h"
+
 namespace isochor {
 
 // A quantity over time (seconds; in statics the load factor): piecewise linear through the points, constant
@@ -13,6 +15,6 @@ struct Curve {
   static Curve constant(double value) { return {{{0, value}}}; }
   static Curve ramp(double value, double end = 1) { return {{{0, 0}, {end, value}}}; }
 };
-double evaluate(const Curve& curve, double t);
+ISOCHOR_API double evaluate(const Curve& curve, double t);
 
 }  // namespace isochor

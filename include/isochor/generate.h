@@ -3,6 +3,7 @@
 
 #include <array>
 
+#include "isochor/export.h"
 #include "isochor/mesh.h"
 
 namespace isochor {
@@ -14,9 +15,9 @@ struct BoxMeshDef {
   std::array<int, 3> divisions{1, 1, 1};
   CellType cell_type = CellType::tet4;
 };
-Result<Mesh> box_mesh(const BoxMeshDef& def);
+ISOCHOR_API Result<Mesh> box_mesh(const BoxMeshDef& def);
 
 // A Tet10 mesh on the same corners, with straight edges. Meshes that are not Tet4 are returned as they are.
-Mesh to_tet10(const Mesh& mesh);
+ISOCHOR_API Mesh to_tet10(const Mesh& mesh);
 
 }  // namespace isochor

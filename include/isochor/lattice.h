@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "isochor/export.h"
 #include "isochor/mesh.h"
 
 namespace isochor {
@@ -34,9 +35,9 @@ struct Lattice {
   std::vector<EmbeddedPoint> embedding;  // one a surface point
 };
 
-Result<Lattice> lattice_mesh(const LatticeDef& def);
+ISOCHOR_API Result<Lattice> lattice_mesh(const LatticeDef& def);
 
 // Where the surface is when the nodes of the lattice are at `positions`.
-std::vector<Vec3> embedded_surface(const Lattice& lattice, std::span<const Vec3> positions);
+ISOCHOR_API std::vector<Vec3> embedded_surface(const Lattice& lattice, std::span<const Vec3> positions);
 
 }  // namespace isochor

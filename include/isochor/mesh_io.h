@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "isochor/export.h"
 #include "isochor/mesh.h"
 
 namespace isochor {
@@ -18,7 +19,7 @@ struct MeshReadOptions {
 // Reads Gmsh 2.2 and 4.1 (.msh, ASCII and binary), VTK legacy (.vtk), VTK XML (.vtu), TetGen (.node/.ele with
 // optional .face), Medit (.mesh) and Abaqus (.inp, one part). The format is told from the content first, the
 // extension second. Inverted cells are turned over; everything else is left for check_mesh.
-Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options = {});
+ISOCHOR_API Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options = {});
 
 enum class Severity : std::uint8_t { note, warning, error };
 
@@ -40,7 +41,7 @@ struct BoundaryPart {
   bool taken = false;   // a surface of the mesh has this name
 };
 
-struct MeshReport {
+struct ISOCHOR_API MeshReport {
   Index nodes = 0, cells = 0, parts = 0;  // parts: connected components of cells
   double volume = 0;                      // [m^3]
   std::array<Vec3, 2> box{};              // lower and upper corner [m]
@@ -50,7 +51,7 @@ struct MeshReport {
   bool usable() const;  // no finding is an error
 };
 
-MeshReport check_mesh(const Mesh& mesh);
+ISOCHOR_API MeshReport check_mesh(const Mesh& mesh);
 
 // One field of a VTK file: `components` numbers a node (or cell), row-major.
 struct VtkField {
@@ -68,12 +69,12 @@ struct VtkGrid {
 
 // Writes a .vtu that ParaView opens (binary, compressed). Written to a temporary name first, then renamed, so
 // an interrupted run leaves no half file.
-Result<void> write_vtu(const std::string& path, const VtkGrid& grid);
+ISOCHOR_API Result<void> write_vtu(const std::string& path, const VtkGrid& grid);
 
 struct PvdEntry {
   double time = 0;   // [s], or load factor
   std::string file;  // relative to the .pvd
 };
-Result<void> write_pvd(const std::string& path, std::span<const PvdEntry> entries);
+ISOCHOR_API Result<void> write_pvd(const std::string& path, std::span<const PvdEntry> entries);
 
 }  // namespace isochor

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "isochor/export.h"
 #include "isochor/mesh.h"
 #include "isochor/solids.h"
 
@@ -56,13 +57,13 @@ struct MeshSelection {
 
 // Boundary faces that fit, nodes_per_face(cell_type) nodes each and wound outward. Errors: criteria that
 // contradict themselves, unknown surfaces, nothing that fits.
-Result<std::vector<Index>> select_faces(const Mesh& mesh, const MeshSelection& selection);
+ISOCHOR_API Result<std::vector<Index>> select_faces(const Mesh& mesh, const MeshSelection& selection);
 // Nodes that fit, ascending, inside the body as well; those of faces that fit where `of`, `facing` or `seed`
 // is given.
-Result<std::vector<Index>> select_nodes(const Mesh& mesh, const MeshSelection& selection);
+ISOCHOR_API Result<std::vector<Index>> select_nodes(const Mesh& mesh, const MeshSelection& selection);
 
 // Puts what is selected into the mesh under the name of the selection. Refuses names that it has already.
-Result<void> add_surface(Mesh& mesh, const MeshSelection& selection);
-Result<void> add_node_set(Mesh& mesh, const MeshSelection& selection);
+ISOCHOR_API Result<void> add_surface(Mesh& mesh, const MeshSelection& selection);
+ISOCHOR_API Result<void> add_node_set(Mesh& mesh, const MeshSelection& selection);
 
 }  // namespace isochor

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "isochor/export.h"
 #include "isochor/mesh.h"
 
 namespace isochor {
@@ -25,7 +26,7 @@ struct SurfaceFeet {
 // Projects the center of every cell onto the surface along the gradient of a smooth distance: u with
 // -laplace u = 1 inside and u = 0 on the surface, on the linear tets of the mesh. Empty `surfaces`: the whole
 // boundary; otherwise these alone, and paths slide along the rest of the boundary.
-Result<SurfaceFeet> surface_feet(const Mesh& mesh, std::span<const std::string> surfaces = {});
+ISOCHOR_API Result<SurfaceFeet> surface_feet(const Mesh& mesh, std::span<const std::string> surfaces = {});
 
 // What becomes of cells that nothing was painted on.
 enum class UnpaintedCells : std::uint8_t {
@@ -45,8 +46,9 @@ struct PaintedCells {
 // Weights in cells from fields of the mesh (Mesh::fields, one component) whose values at nodes of the surface
 // lie between 0 and 1; nodes inside do not count. Where several fields add up to more than 1 they are divided
 // by their sum; weights below `threshold` count as not painted.
-Result<PaintedCells> painted_cells(const Mesh& mesh, std::span<const std::string> fields,
-                                   std::span<const std::string> surfaces = {},
-                                   UnpaintedCells unpainted = UnpaintedCells::none, double threshold = 0.01);
+ISOCHOR_API Result<PaintedCells> painted_cells(const Mesh& mesh, std::span<const std::string> fields,
+                                               std::span<const std::string> surfaces = {},
+                                               UnpaintedCells unpainted = UnpaintedCells::none,
+                                               double threshold = 0.01);
 
 }  // namespace isochor

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "isochor/export.h"
 #include "isochor/types.h"
 
 namespace isochor {
@@ -24,19 +25,19 @@ struct PoseTrack {
   std::string file = {};   // where they are read from; only scene files use it
 };
 
-Pose pose_at(const PoseTrack& track, double t);
+ISOCHOR_API Pose pose_at(const PoseTrack& track, double t);
 // Where a point that is fixed to the bone is at time t; `rest` is where it is at the first keyframe [m].
-Vec3 carried(const PoseTrack& track, double t, const Vec3& rest);
+ISOCHOR_API Vec3 carried(const PoseTrack& track, double t, const Vec3& rest);
 
 // The angle that the bone turns from t0 to t1 [rad], summed over its keyframes.
-double turned(const PoseTrack& track, double t0, double t1);
+ISOCHOR_API double turned(const PoseTrack& track, double t0, double t1);
 
 // Refuses tracks without keys, times that do not ascend, numbers that are not finite and quaternions far
 // from unit length.
-Result<void> check_poses(const PoseTrack& track);
+ISOCHOR_API Result<void> check_poses(const PoseTrack& track);
 
 // Reads lines "t, x, y, z, qw, qx, qy, qz" in seconds and meters; a first line of names and lines that begin
 // with # are skipped. Quaternions are normalized.
-Result<PoseTrack> read_poses(const std::string& path);
+ISOCHOR_API Result<PoseTrack> read_poses(const std::string& path);
 
 }  // namespace isochor

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "isochor/export.h"
 #include "isochor/types.h"
 
 namespace isochor {
@@ -18,7 +19,7 @@ struct TriangleSurface {
 
 // Reads Wavefront (.obj), STL (text and binary), or the boundary of a volume mesh of any kind that read_mesh
 // reads. `scale` multiplies coordinates.
-Result<TriangleSurface> read_surface(const std::string& path, double scale = 1);
+ISOCHOR_API Result<TriangleSurface> read_surface(const std::string& path, double scale = 1);
 
 // Signed distances [m] at the points of a regular grid, negative inside.
 struct DistanceGrid {
@@ -30,7 +31,7 @@ struct DistanceGrid {
 
 // Reads VTK legacy files with structured points (the scalars that come first), text or binary, and SDFGen's
 // text (.sdf): counts, origin, spacing, values. `scale` multiplies coordinates and distances.
-Result<DistanceGrid> read_distances(const std::string& path, double scale = 1);
+ISOCHOR_API Result<DistanceGrid> read_distances(const std::string& path, double scale = 1);
 
 // A closed rigid shape, prepared once and shared by all obstacles that have it. Immutable.
 class Solid;
@@ -39,14 +40,14 @@ using SolidPtr = std::shared_ptr<const Solid>;
 // The solid inside a closed surface. Points that lie on each other are taken as one, and a surface that is
 // wound inward throughout is turned over. Refused are open surfaces, edges of more than two triangles, and
 // triangles that run against their neighbors.
-Result<SolidPtr> mesh_solid(const TriangleSurface& surface);
+ISOCHOR_API Result<SolidPtr> mesh_solid(const TriangleSurface& surface);
 
 // The solid where an interpolated field is negative: cubic splines through the values, so that first and
 // second derivatives are continuous. Refused are fields that are negative on the border of the grid or
 // nowhere, and fields that are no distances (whose slope at the surface is not about one).
-Result<SolidPtr> field_solid(const DistanceGrid& grid);
+ISOCHOR_API Result<SolidPtr> field_solid(const DistanceGrid& grid);
 
 // Distances to a closed surface on a grid around it, with `spacing` between points and two of them as margin.
-Result<DistanceGrid> sampled_distances(const TriangleSurface& surface, double spacing);
+ISOCHOR_API Result<DistanceGrid> sampled_distances(const TriangleSurface& surface, double spacing);
 
 }  // namespace isochor

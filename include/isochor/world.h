@@ -15,8 +15,11 @@
 #include <string>
 #include <vector>
 
+#include "isochor/abi.h"
 #include "isochor/bodies.h"
 #include "isochor/effects/effect.h"
+#include "isochor/export.h"
+#include "isochor/host.h"
 #include "isochor/ids.h"
 #include "isochor/measures.h"
 #include "isochor/options.h"
@@ -25,12 +28,23 @@
 
 namespace isochor {
 
-inline constexpr std::uint64_t kWorldAbi = 1;
+// Stands for what the public headers say and for how the host's compiler lays it out.
+inline constexpr std::uint64_t kWorldAbi = [] {
+  std::uint64_t abi = kPublicHeaders;
+  for (const std::size_t size :
+       {sizeof(std::string), sizeof(std::vector<double>), sizeof(std::function<void()>), sizeof(BodyDef),
+        sizeof(WorldOptions), sizeof(StepReport), sizeof(BodyFields)}) {
+    abi = (abi ^ size) * 0x100000001b3u;
+  }
+  return abi;
+}();
 
-class World {
+class ISOCHOR_API World {
  public:
   // `abi` catches a host that was built against headers of another version.
   static Result<World> create(WorldOptions options, std::uint64_t abi = kWorldAbi);
+  // The same with threads and a log of the host; the results have the same bits.
+  static Result<World> create(WorldOptions options, Host host, std::uint64_t abi = kWorldAbi);
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
   ~World();
@@ -73,6 +87,11 @@ class World {
   // Dynamics: how fast the nodes of a body move, one velocity a node [m/s]. Multi-step schemes forget their
   // past.
   Result<void> set_velocities(BodyId body, std::span<const Vec3> velocities);
+
+  // Whether an id leads to a body or an effect of this world; the reason names it. Calls that return a Result
+  // say the same. Those that return a value return an empty one and write the reason to the log.
+  Result<void> check(BodyId body) const;
+  Result<void> check(EffectId effect) const;
 
   double time() const;
   // Views of the state's own numbers, valid until the next step or load().

@@ -322,6 +322,7 @@ std::vector<SceneCase> scene_cases() {
   add_fields(out);
   add_skins(out);
   add_attachments(out);
+  add_worked_example(out);
   return out;
 }
 

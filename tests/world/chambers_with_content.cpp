@@ -181,7 +181,7 @@ TEST_CASE("the weight of a liquid presses like depth times density times gravity
     def.gravity = g;
     Chambers c({def});
     must_advance(c.world);
-    EffectId floor{};  // the first effect is the hold
+    EffectId floor{0};  // the first effect is the hold
     const Vec3 force = c.world.reaction(floor)[0];
     // The body itself is weightless here: the support carries the liquid alone.
     const Vec3 weight = 1200 * 1e-6 * g;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "engine/mesh/cell_shape.h"
-#include "engine/mesh/read/cursor.h"
 #include "engine/mesh/tet_shape.h"
+#include "engine/mesh/words.h"
 #include "isochor/mesh_io.h"
 
 namespace isochor::mesh_files {

@@ -14,19 +14,6 @@ bool is_space(char c) {
 
 }  // namespace
 
-std::string shown(double value) {
-  char buffer[32];
-  const auto [end, status] = std::to_chars(buffer, buffer + sizeof buffer, value);
-  return status == std::errc() ? std::string(buffer, end) : std::string("?");
-}
-
-std::string quoted(std::string_view raw) {
-  constexpr std::size_t longest = 40;
-  std::string text = "'";
-  for (const char c : raw.substr(0, longest)) text += (c >= ' ' && c <= '~') ? c : '?';
-  return text + (raw.size() > longest ? "...'" : "'");
-}
-
 void Cursor::skip_space() {
   while (at_ < text_.size() && is_space(text_[at_])) ++at_;
 }

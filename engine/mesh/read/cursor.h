@@ -10,6 +10,8 @@
 #include <string_view>
 #include <type_traits>
 
+#include "engine/mesh/words.h"
+
 namespace isochor::mesh_files {
 
 // Thrown by readers and caught by read_mesh only: a parser has too many ways to fail for a status at each
@@ -17,31 +19,6 @@ namespace isochor::mesh_files {
 struct ReadFailure {
   std::string message;
 };
-
-// Joins texts and numbers; numbers in their shortest exact form.
-std::string shown(double value);
-inline std::string shown(std::string_view text) {
-  return std::string(text);
-}
-inline std::string shown(const char* text) {
-  return text;
-}
-inline std::string shown(const std::string& text) {
-  return text;
-}
-template <class T>
-requires std::is_integral_v<T> std::string shown(T value) {
-  return std::to_string(value);
-}
-template <class... Parts>
-std::string join(const Parts&... parts) {
-  std::string text;
-  (text.append(shown(parts)), ...);
-  return text;
-}
-
-// A piece of the file fit for a message: short, quoted, without control characters.
-std::string quoted(std::string_view raw);
 
 class Cursor {
  public:

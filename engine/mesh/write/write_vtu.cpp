@@ -10,7 +10,7 @@
 #include <new>
 
 #include "engine/base/atomic_file.h"
-#include "engine/mesh/read/cursor.h"
+#include "engine/mesh/words.h"
 #include "isochor/mesh_io.h"
 
 namespace isochor {

@@ -8,6 +8,7 @@
 
 #include "isochor/curves.h"
 #include "isochor/effects/effect.h"
+#include "isochor/export.h"
 #include "isochor/ids.h"
 
 namespace isochor {
@@ -30,7 +31,7 @@ struct CableDef {
   Curve amount = Curve::constant(1);
   double stiffness = 0;  // of the whole cable under length control [N/m]; 0: inextensible
 };
-EffectPtr cable(CableDef def);
+ISOCHOR_API EffectPtr cable(CableDef def);
 
 // Threads that are bonded to the body along paths: every segment between two points has its own tension.
 struct WindingDef {
@@ -41,10 +42,11 @@ struct WindingDef {
   double slack = 0;                      // strain up to which a segment carries nothing
   bool pulls_only = true;                // false: it resists shortening too
 };
-EffectPtr winding(WindingDef def);
+ISOCHOR_API EffectPtr winding(WindingDef def);
 
 // Points of a helix about the axis from `start` to `end`; without turns between them, of a straight line.
 // `out` is where the first point lies from the axis; its length is the radius. Negative turns: left-handed.
-std::vector<Vec3> helix(const Vec3& start, const Vec3& end, const Vec3& out, double turns, int points);
+ISOCHOR_API std::vector<Vec3> helix(const Vec3& start, const Vec3& end, const Vec3& out, double turns,
+                                    int points);
 
 }  // namespace isochor

@@ -8,6 +8,7 @@
 
 #include "isochor/curves.h"
 #include "isochor/effects/effect.h"
+#include "isochor/export.h"
 #include "isochor/ids.h"
 
 namespace isochor {
@@ -40,7 +41,7 @@ struct CavityDef {
   // Supports must be added before the cavity.
   bool cap_free_openings = false;
 };
-EffectPtr cavity(CavityDef def);
+ISOCHOR_API EffectPtr cavity(CavityDef def);
 
 // A valve between two chambers of control `gas` (of one polytropic exponent and ambient pressure) or
 // `liquid`, or a leak to the outside. Volume flow, for gas measured at ambient pressure: conductance times
@@ -51,6 +52,6 @@ struct ValveDef {
   double conductance = 0;             // [m^3/(s Pa)]
   Curve amount = Curve::constant(1);  // opening, 0: shut
 };
-EffectPtr valve(ValveDef def);
+ISOCHOR_API EffectPtr valve(ValveDef def);
 
 }  // namespace isochor

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "isochor/effects/effect.h"
+#include "isochor/export.h"
 #include "isochor/ids.h"
 #include "isochor/poses.h"
 #include "isochor/solids.h"
@@ -58,7 +59,7 @@ struct RigidBodyDef {
   Obstacle shape;         // any but a plane, where it is at rest; no motion of its own
   double density = 1000;  // [kg/m^3]
 };
-EffectPtr rigid_body(RigidBodyDef def);
+ISOCHOR_API EffectPtr rigid_body(RigidBodyDef def);
 
 // How the linear systems see that friction depends on the normal force and turns with the surface. Both end
 // at the same solution.
@@ -97,7 +98,7 @@ struct ContactDef {
   InitialOverlap initial_overlap = InitialOverlap::report;
   double resolve_time = 1;  // [s]; statics: load factor
 };
-EffectPtr contact(ContactDef def);
+ISOCHOR_API EffectPtr contact(ContactDef def);
 
 // Surfaces of soft bodies against each other, or that of one body against itself. Both sides are integrated
 // over with points at corners, edges and middles of triangles (faces of more nodes are split), each with a
@@ -119,6 +120,6 @@ struct SurfaceContactDef {
   InitialOverlap initial_overlap = InitialOverlap::report;
   double resolve_time = 1;  // [s]; statics: load factor
 };
-EffectPtr surface_contact(SurfaceContactDef def);
+ISOCHOR_API EffectPtr surface_contact(SurfaceContactDef def);
 
 }  // namespace isochor

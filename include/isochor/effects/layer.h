@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "isochor/effects/effect.h"
+#include "isochor/export.h"
 #include "isochor/ids.h"
 
 namespace isochor {
@@ -22,7 +23,7 @@ struct EpidermisDef {
   double stiffness = 0;           // [N/m]
   double gamma = 0;               // [-] >= 0, how soon it stiffens
 };
-EffectPtr epidermis(EpidermisDef def);
+ISOCHOR_API EffectPtr epidermis(EpidermisDef def);
 
 // A neo-Hookean membrane on surfaces, in plane stress: stretch and shear, no bending and no mass.
 struct MembraneDef {
@@ -33,7 +34,7 @@ struct MembraneDef {
   double poisson = 0.5;  // [0, 0.5]
   double thickness = 0;  // [m]
 };
-EffectPtr membrane(MembraneDef def);
+ISOCHOR_API EffectPtr membrane(MembraneDef def);
 
 // A thin layer on a surface, fabric or paper, that resists stretching: one thread along every edge.
 struct StrainLimitDef {
@@ -44,6 +45,6 @@ struct StrainLimitDef {
   double slack = 0;        // strain up to which it carries nothing
   bool pulls_only = true;  // false: it resists shortening too
 };
-EffectPtr strain_limit(StrainLimitDef def);
+ISOCHOR_API EffectPtr strain_limit(StrainLimitDef def);
 
 }  // namespace isochor

@@ -6,6 +6,7 @@
 
 #include "isochor/curves.h"
 #include "isochor/effects/effect.h"
+#include "isochor/export.h"
 #include "isochor/ids.h"
 #include "isochor/selection.h"
 
@@ -20,7 +21,7 @@ struct TractionDef {
   Vec3 total_force{};  // [N], instead of traction
   Curve amount = Curve::constant(1);
 };
-EffectPtr traction(TractionDef def);
+ISOCHOR_API EffectPtr traction(TractionDef def);
 
 // Pressure that follows the faces it acts on: the force -p n per present area, n out of the body, so that
 // a positive amount pushes inward. The faces are any part of the boundary, closed or not (a chamber whose
@@ -35,7 +36,7 @@ struct PressureDef {
   // linear there. Needed by continuation(), by the iterative solver and by methods of dual problems.
   bool lagged = false;
 };
-EffectPtr pressure(PressureDef def);
+ISOCHOR_API EffectPtr pressure(PressureDef def);
 
 // Dead force [N], shared equally by the selected nodes.
 struct PointForceDef {
@@ -44,7 +45,7 @@ struct PointForceDef {
   Vec3 force{};
   Curve amount = Curve::constant(1);
 };
-EffectPtr point_force(PointForceDef def);
+ISOCHOR_API EffectPtr point_force(PointForceDef def);
 
 // Damping in dynamics, on top of that of the time scheme; none in statics.
 struct DampingDef {
@@ -54,6 +55,6 @@ struct DampingDef {
   double viscosity = 0;              // [Pa s]: Kelvin-Voigt stress 2 viscosity dE/dt, E Green's strain
   double mass_rate = 0;  // [1/s]: force -mass_rate times momentum (the mass part of Rayleigh damping)
 };
-EffectPtr damping(DampingDef def);
+ISOCHOR_API EffectPtr damping(DampingDef def);
 
 }  // namespace isochor

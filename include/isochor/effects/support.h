@@ -7,6 +7,7 @@
 
 #include "isochor/curves.h"
 #include "isochor/effects/effect.h"
+#include "isochor/export.h"
 #include "isochor/ids.h"
 #include "isochor/poses.h"
 #include "isochor/selection.h"
@@ -41,7 +42,7 @@ struct DirichletDef {
   // may be empty.
   std::vector<Vec3> points;
 };
-EffectPtr dirichlet(DirichletDef def);
+ISOCHOR_API EffectPtr dirichlet(DirichletDef def);
 
 // Holds nodes of one body to the material points of another (or the same) that they lie on at rest.
 struct TieDef {
@@ -50,6 +51,6 @@ struct TieDef {
   BodyId to{};           // the body that holds the points
   double stiffness = 0;  // of all springs together [N/m]; 0: hard
 };
-EffectPtr tie(TieDef def);
+ISOCHOR_API EffectPtr tie(TieDef def);
 
 }  // namespace isochor

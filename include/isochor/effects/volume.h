@@ -8,6 +8,7 @@
 
 #include "isochor/choices.h"
 #include "isochor/effects/effect.h"
+#include "isochor/export.h"
 #include "isochor/ids.h"
 #include "isochor/painted.h"
 
@@ -60,6 +61,6 @@ struct VolumeDef {
   // be condensed. Another model than the consistent one; not for hard rows.
   bool lumped_compliance = false;
 };
-EffectPtr volume(VolumeDef def);
+ISOCHOR_API EffectPtr volume(VolumeDef def);
 
 }  // namespace isochor
