@@ -4,197 +4,218 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/solve/watchdog.h"
+
 namespace isochor {
+
+// The minimization of the positions on its way.
+struct DualAscent::Descent {
+  Watchdog watchdog;
+  double force = 0;    // residual at the last iterate
+  bool reuse = false;  // of factors at hand
+  bool whole = true;   // the last step
+  double slope = 0, longest = 0;
+  double start = 0;  // the Lagrangian where the step begins
+  double noise = 0;
+  // Where the watchdog's step began.
+  double watched_start = 0, watched_slope = 0, watched_longest = 0;
+};
 
 DualAscent::DualAscent(std::shared_ptr<const System> system, const Parallel& parallel,
                        std::unique_ptr<LinearSolver> solver, DualAscentOptions options)
-    : SaddlePoint(std::move(system), parallel, std::move(solver)), ascent_(options) {
-  const std::size_t n = at(system_->nodes()), m = at(system_->rows());
-  for (auto* v : {&effective_, &direction_, &image_, &weights_}) v->assign(m, 0);
+    : SaddlePoint(system, parallel, std::move(solver)), ascent_(options) {
+  const std::size_t n = at(system->nodes()), m = at(system->rows());
+  for (auto* v : {&effective_, &direction_, &image_, &gradient_, &weights_}) v->assign(m, 0);
+  if (system->has_bounds()) held_.assign(m, 0);
   if (ascent_.conjugate) {
     before_.assign(m, 0);
     image_before_.assign(m, 0);
   }
-  for (auto* v : {&dx_, &rhs_, &x_trial_, &node_work_, &reaction_, &x_before_, &dx_before_}) v->resize(n);
+  for (auto* v : {&dx_, &rhs_, &node_work_, &reaction_, &x_before_, &dx_before_}) v->resize(n);
 }
 
-// Evaluates at x with the multipliers lambda + W theta(x), projected: those of the augmented Lagrangian's
-// gradient. Leaves theta for lambda itself.
-void DualAscent::evaluate(const SaddleProblem& p, Want want, std::span<const Vec3> x,
-                          std::span<const double> lambda) {
-  const System& s = *system_;
-  assembly_.evaluate(Want::value, Definiteness::exact, x, lambda, p.prescribed);
-  row_residual(p, lambda);
-  any_clamped_ = false;
+// Evaluates at the iterate with the multipliers lambda + W theta(x), projected: those of the augmented
+// Lagrangian's gradient. Leaves theta for lambda itself.
+void DualAscent::evaluate(const SaddleProblem& p, Want want, Iterate& it) {
+  const System& s = system();
+  slots().evaluate(Want::value, Definiteness::exact, it.x, it.lambda, p.prescribed);
+  evaluator_.read_rows(p, it);
+  any_held_ = false;
   for (std::size_t r = 0; r < effective_.size(); ++r) {
-    effective_[r] = lambda[r] + weights_[r] * theta_[r];
+    effective_[r] = it.lambda[r] + weights_[r] * it.theta[r];
     if (!s.has_bounds()) continue;
     const double free = effective_[r];
     effective_[r] = std::clamp(free, s.row_lower()[r], s.row_upper()[r]);
     // Without weights the side of theta decides for a multiplier that sits at its bound.
-    const double push = weights_[r] > 0 ? free : lambda[r] + theta_[r] / s.row_metric()[r];
-    clamped_[r] = push <= s.row_lower()[r] || push >= s.row_upper()[r];
-    any_clamped_ = any_clamped_ || clamped_[r];
+    const double push = weights_[r] > 0 ? free : it.lambda[r] + it.theta[r] / s.row_metric()[r];
+    held_[r] = push <= s.row_lower()[r] || push >= s.row_upper()[r];
+    any_held_ = any_held_ || held_[r];
   }
-  if (want == Want::value) return;
-  assembly_.evaluate(want, want == Want::hessian ? definiteness_ : Definiteness::exact, x, effective_,
-                     p.prescribed);
-  force_residual(p, x);
+  matrix_.hold(any_held_ ? std::span<const std::uint8_t>(held_) : std::span<const std::uint8_t>());
+  slots().evaluate(want, want == Want::hessian ? matrix_.definiteness() : Definiteness::exact, it.x,
+                   effective_, p.prescribed);
+  evaluator_.read_forces(p, it);
 }
 
-// The augmented Lagrangian at the last evaluation, up to a constant of lambda.
-double DualAscent::lagrangian(const SaddleProblem& p, std::span<const Vec3> x,
-                              std::span<const double> lambda) const {
-  double sum = potential(p, x);
-  for (std::size_t r = 0; r < theta_.size(); ++r) {
-    const double up = effective_[r] - lambda[r];
-    sum += effective_[r] * theta_[r];
+// The augmented Lagrangian at the last evaluation, which was here, up to a constant of lambda.
+double DualAscent::lagrangian(const SaddleProblem& p, const Iterate& it) const {
+  double sum = evaluator_.potential(p, it);
+  for (std::size_t r = 0; r < it.theta.size(); ++r) {
+    const double up = effective_[r] - it.lambda[r];
+    sum += effective_[r] * it.theta[r];
     if (weights_[r] > 0) sum -= 0.5 * up * up / weights_[r];
   }
   return sum;
 }
 
+double DualAscent::value_at(const SaddleProblem& p, double tau, SaddleReport& report) {
+  ++report.trials;
+  for (std::size_t i = 0; i < now_.x.size(); ++i) trial_.x[i] = now_.x[i] + tau * dx_[i];
+  evaluate(p, Want::gradient, trial_);
+  return lagrangian(p, trial_);
+}
+
+bool DualAscent::left_all_bounds() const {
+  const System& s = system();
+  return !std::all_of(now_.x.begin(), now_.x.end(), [&](const Vec3& xi) {
+    return finite(xi) && norm(xi - s.parts().rest[0]) <= 1e4 * s.length();
+  });
+}
+
+bool DualAscent::spent(const SaddleOptions& o, const Descent& d, int iteration,
+                       const SaddleReport& report) const {
+  if (o.budget > 0 && report.iterations + report.corrections >= o.budget) return true;
+  return report.factorizations >= o.max_factorizations || (!d.whole && iteration >= o.patient_iterations) ||
+         report.inner_work() >= o.most_inner_work();
+}
+
+// The Newton step of the positions: given coordinates move by their whole gap, the others follow, A dx =
+// -(r + A gap). Where factors at hand do not serve, new ones.
+bool DualAscent::direction(const SaddleProblem& p, Descent& d, SaddleReport& report) {
+  if (d.reuse) {
+    ++report.corrections;
+  } else {
+    if (!system().laws().empty()) evaluator_.apply_laws(p, now_.lambda, true);
+    factored_ = matrix_.factor(p, now_.x, effective_, report);
+    if (!factored_) {
+      if (report.status == SaddleStatus::converged) report.status = SaddleStatus::singular;
+      report.status = failed_as(report.status);
+      return false;
+    }
+    ++report.iterations;
+  }
+  std::fill(node_work_.begin(), node_work_.end(), Vec3{});
+  if (gap_.open) {
+    slots().hessian_times(gap_.way, node_work_);
+    evaluator_.add_inertia_of_gap(gap_, node_work_);
+    slots().jacobian_times(gap_.way, image_);
+    for (std::size_t r = 0; r < image_.size(); ++r) image_[r] *= any_held_ && held_[r] ? 0 : weights_[r];
+    slots().constraint_force(image_, reaction_);
+    for (std::size_t i = 0; i < node_work_.size(); ++i) node_work_[i] += reaction_[i];
+  }
+  for (std::size_t i = 0; i < now_.force.size(); ++i) rhs_[i] = -(now_.force[i] + node_work_[i]);
+  bool solved = kkt_.solve_stiffness(rhs_, dx_, seconds_);
+  if (!solved && kkt_.inertia_was_wrong())
+    solved = matrix_.factor(p, now_.x, effective_, report) && kkt_.solve_stiffness(rhs_, dx_, seconds_);
+  if (!solved) {
+    report.status = failed_as(SaddleStatus::singular);
+    return false;
+  }
+  d.slope = d.longest = 0;
+  for (std::size_t i = 0; i < dx_.size(); ++i) {
+    d.slope += dot(dx_[i], now_.force[i]);
+    dx_[i] += gap_.way[i];
+    d.longest = std::max(d.longest, norm(dx_[i]));
+  }
+  return true;
+}
+
+bool DualAscent::backtrack(const SaddleProblem& p, Descent& d, double tau, SaddleReport& report) {
+  constexpr int most_trials = 40;
+  constexpr double shortest = 1e-10;
+  for (int trial = 0; trial < most_trials && tau > shortest && !interrupted(); ++trial, tau *= 0.5) {
+    const double value = value_at(p, tau, report);
+    const double enough = d.start + 1e-4 * tau * d.slope;
+    // Given coordinates on their way pump work in; then a finite energy and elements that stay whole do.
+    bool accepted =
+        std::isfinite(value) && (gap_.open || value <= enough ||
+                                 (std::abs(tau * d.slope) < 10 * d.noise && value <= d.start + 10 * d.noise));
+    // Where backtracking would creep.
+    const double curvature = value - d.start - d.slope;
+    if (!accepted && tau == 1 && std::isfinite(value) && -0.5 * d.slope < 0.1 * curvature &&
+        !matrix_.mended() && !d.reuse && d.watchdog.may_begin()) {
+      d.watchdog.begin(d.start + 1e-4 * d.slope, value - d.start);
+      d.watched_start = d.start;
+      d.watched_slope = d.slope;
+      d.watched_longest = d.longest;
+      std::copy(now_.x.begin(), now_.x.end(), x_before_.begin());
+      std::copy(dx_.begin(), dx_.end(), dx_before_.begin());
+      accepted = true;
+    }
+    if (!accepted) continue;
+    std::swap(now_.x, trial_.x);
+    report.step = tau * d.longest;
+    d.whole = tau == 1;
+    return true;
+  }
+  report.status = failed_as(SaddleStatus::line_search_failed);
+  return false;
+}
+
+// Moves now_.x along the direction; false: the report says why not.
+bool DualAscent::search(const SaddleProblem& p, Descent& d, SaddleReport& report) {
+  const System& s = system();
+  const Stopwatch watch(seconds_.line_search);
+  d.start = lagrangian(p, now_);
+  d.noise = 1e-12 * (evaluator_.potential_magnitude(p, now_) + std::abs(d.start));
+  double tau = d.longest > 100 * s.length() ? 100 * s.length() / d.longest : 1;
+  if (d.watchdog.watching()) {
+    if (d.watchdog.judge(value_at(p, tau, report)) != Watchdog::Outcome::failed) {
+      std::swap(now_.x, trial_.x);
+      return true;
+    }
+    // Back to where it began, to backtrack along its direction.
+    std::copy(x_before_.begin(), x_before_.end(), now_.x.begin());
+    std::copy(dx_before_.begin(), dx_before_.end(), dx_.begin());
+    d.start = d.watched_start;
+    d.slope = d.watched_slope;
+    d.longest = d.watched_longest;
+    tau = 0.5;
+  }
+  if (!backtrack(p, d, tau, report)) return false;
+  if (left_all_bounds()) report.status = SaddleStatus::diverged;
+  return report.status == SaddleStatus::converged;
+}
+
 // Newton's method for the positions at fixed multipliers, until the forces balance to `tolerance`.
 bool DualAscent::minimize(const SaddleProblem& p, const SaddleOptions& options, double tolerance,
-                          std::span<Vec3> x, std::span<const double> lambda, SaddleReport& report) {
-  const System& s = *system_;
-  constexpr int most_failed_ventures = 3, most_returns = 4;
-  struct {
-    bool under_way = false;
-    int failed = 0, returns = 0;
-    double start = 0, slope = 0, longest = 0, enough = 0, excess = 0;
-  } venture;
-  double before = 0;
-  bool whole = true;  // the last step
+                          SaddleReport& report) {
+  Descent d;
+  trial_.lambda = now_.lambda;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    if (options.budget > 0 && report.iterations + report.corrections >= options.budget) break;
-    if (report.factorizations >= options.max_factorizations ||
-        (!whole && iteration >= options.patient_iterations) ||
-        report.inner_work() >= options.most_inner_work())
-      break;
+    if (spent(options, d, iteration, report)) break;
     {
       const Stopwatch watch(seconds_.evaluate);
-      evaluate(p, Want::hessian, x, lambda);
+      evaluate(p, Want::hessian, now_);
     }
-    position_gap(p, x);
-    const Residuals now = measure(p, x, lambda);
+    evaluator_.find_gap(p, now_.x, gap_);
+    const Evaluator::Residuals now = evaluator_.measure(p, now_);
     if (factored_ && now.force <= tolerance && now.position <= options.position_tolerance) return true;
     if (interrupted()) {
       report.status = SaddleStatus::cancelled;
       return false;
     }
     // Factors at hand serve as long as a step with them takes most of the residual away.
-    const bool reuse =
-        factored_ && !has_gap_ && now.force < 1e-2 && (iteration == 0 || now.force < 0.3 * before);
-    before = now.force;
-    if (reuse) {
-      ++report.corrections;
-    } else {
-      if (!s.laws().empty()) apply_laws(p, lambda, true);
-      factored_ = factor(p, x, effective_, report);
-      if (!factored_) {
-        if (report.status == SaddleStatus::converged) report.status = SaddleStatus::singular;
-        report.status = failed_as(report.status);
-        return false;
-      }
-      ++report.iterations;
-    }
-    // Given coordinates move by their whole gap, the others follow: A dx = -(r + A gap).
-    std::fill(node_work_.begin(), node_work_.end(), Vec3{});
-    if (has_gap_) {
-      assembly_.hessian_times(gap_, node_work_);
-      add_inertia_of_gap(node_work_);
-      assembly_.jacobian_times(gap_, image_);
-      for (std::size_t r = 0; r < image_.size(); ++r)
-        image_[r] *= any_clamped_ && clamped_[r] ? 0 : weights_[r];
-      assembly_.constraint_force(image_, reaction_);
-      for (std::size_t i = 0; i < node_work_.size(); ++i) node_work_[i] += reaction_[i];
-    }
-    for (std::size_t i = 0; i < r_.size(); ++i) rhs_[i] = -(r_[i] + node_work_[i]);
-    bool solved = kkt_.solve_stiffness(rhs_, dx_, seconds_);
-    if (!solved && kkt_.inertia_was_wrong())
-      solved = factor(p, x, effective_, report) && kkt_.solve_stiffness(rhs_, dx_, seconds_);
-    if (!solved) {
-      report.status = failed_as(SaddleStatus::singular);
-      return false;
-    }
-    double slope = 0, longest = 0;
-    for (std::size_t i = 0; i < dx_.size(); ++i) {
-      slope += dot(dx_[i], r_[i]);
-      dx_[i] += gap_[i];
-      longest = std::max(longest, norm(dx_[i]));
-    }
-    double start = lagrangian(p, x, lambda);
-    const double noise = 1e-12 * (potential_magnitude(p, x) + std::abs(start));
-    double tau = longest > 100 * s.length() ? 100 * s.length() / longest : 1;
-    bool accepted = false;
-    const Stopwatch watch(seconds_.line_search);
-    const auto value_at = [&](double step) {
-      ++report.trials;
-      for (std::size_t i = 0; i < x.size(); ++i) x_trial_[i] = x[i] + step * dx_[i];
-      evaluate(p, Want::gradient, x_trial_, lambda);
-      return lagrangian(p, x_trial_, lambda);
-    };
-    if (venture.under_way) {
-      // The step after one that was taken although its end was higher: held against where that one began.
-      const double value = value_at(tau);
-      const double left = value - venture.enough;
-      if (left <= 0 || (left < 0.2 * venture.excess && ++venture.returns < most_returns)) {
-        venture.under_way = left > 0;
-        venture.excess = left;
-        if (left <= 0) venture.failed = std::max(0, venture.failed - 1);
-        std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
-        continue;
-      }
-      // Back to there, to backtrack along its direction.
-      venture.under_way = false;
-      ++venture.failed;
-      std::copy(x_before_.begin(), x_before_.end(), x.begin());
-      std::copy(dx_before_.begin(), dx_before_.end(), dx_.begin());
-      start = venture.start;
-      slope = venture.slope;
-      longest = venture.longest;
-      tau = 0.5;
-    }
-    for (int trial = 0; trial < 40 && tau > 1e-10 && !interrupted(); ++trial, tau *= 0.5) {
-      const double value = value_at(tau);
-      // Given coordinates on their way pump work in; then a finite energy and elements that stay whole do.
-      accepted =
-          std::isfinite(value) && (has_gap_ || value <= start + 1e-4 * tau * slope ||
-                                   (std::abs(tau * slope) < 10 * noise && value <= start + 10 * noise));
-      if (accepted) break;
-      // Where backtracking would creep: what should turn was stretched on the tangent, stiff parts charge for
-      // that, and the next step takes it back (Newton's ventures).
-      const double curvature = value - start - slope;
-      if (tau == 1 && std::isfinite(value) && -0.5 * slope < 0.1 * curvature && !mended_ && !reuse &&
-          venture.failed < most_failed_ventures) {
-        venture = {true, venture.failed, 0, start, slope, longest, start + 1e-4 * slope, value - start};
-        std::copy(x.begin(), x.end(), x_before_.begin());
-        std::copy(dx_.begin(), dx_.end(), dx_before_.begin());
-        accepted = true;
-        break;
-      }
-    }
-    if (!accepted) {
-      report.status = failed_as(SaddleStatus::line_search_failed);
-      return false;
-    }
-    std::copy(x_trial_.begin(), x_trial_.end(), x.begin());
-    report.step = tau * longest;
-    whole = tau == 1;
-    for (const Vec3& xi : x) {
-      if (!finite(xi) || norm(xi - s.parts().rest[0]) > 1e4 * s.length()) {
-        report.status = SaddleStatus::diverged;
-        return false;
-      }
-    }
+    d.reuse = factored_ && !gap_.open && now.force < 1e-2 && (iteration == 0 || now.force < 0.3 * d.force);
+    d.force = now.force;
+    if (!direction(p, d, report) || !search(p, d, report)) return false;
   }
   report.status = SaddleStatus::iteration_limit;
   return false;
 }
 
 // Takes from the direction its part along the last one, unless what is left does not climb any more (the
-// gradient is in theta_): then the last one is forgotten.
+// gradient is in gradient_): then the last one is forgotten.
 void DualAscent::conjugate() {
   if (has_before_) {
     double across = 0, along = 0;
@@ -205,36 +226,39 @@ void DualAscent::conjugate() {
     const double part = along > 0 ? across / along : 0;
     double up = 0;
     for (std::size_t r = 0; r < direction_.size(); ++r)
-      up += theta_[r] * (direction_[r] - (theta_[r] != 0 ? part * before_[r] : 0));
+      up += gradient_[r] * (direction_[r] - (gradient_[r] != 0 ? part * before_[r] : 0));
     if (up > 0) {
       // Rows held at a bound have no gradient and stay where they are.
       for (std::size_t r = 0; r < direction_.size(); ++r)
-        if (theta_[r] != 0) direction_[r] -= part * before_[r];
+        if (gradient_[r] != 0) direction_[r] -= part * before_[r];
     }
   }
   std::copy(direction_.begin(), direction_.end(), before_.begin());
   has_before_ = true;
 }
 
-// One step of the multipliers along the dual gradient T^T theta, of the length that maximizes the dual
-// function's quadratic model (one solve with the factors at hand).
-bool DualAscent::climb(std::span<double> lambda, SaddleReport& report) {
-  const System& s = *system_;
-  std::copy(theta_.begin(), theta_.end(), direction_.begin());
+// The ascent's direction: the dual gradient T^T theta, in units of the row metric where it is scaled.
+void DualAscent::find_climb() {
+  std::copy(now_.theta.begin(), now_.theta.end(), direction_.begin());
   for (std::size_t r = 0; r < direction_.size(); ++r)
-    if (any_clamped_ && clamped_[r]) direction_[r] = 0;
+    if (any_held_ && held_[r]) direction_[r] = 0;
   kkt_.weigh_transposed(direction_);
-  double up = 0;
-  std::copy(direction_.begin(), direction_.end(), theta_.begin());
+  std::copy(direction_.begin(), direction_.end(), gradient_.begin());
   if (ascent_.scaled) {
     for (std::size_t r = 0; r < direction_.size(); ++r) direction_[r] /= kkt_.dual_preconditioner()[r];
   }
   if (ascent_.conjugate) conjugate();
+}
+
+// One step of the multipliers along it, of the length that maximizes the dual function's quadratic model (one
+// solve with the factors at hand).
+bool DualAscent::climb(SaddleReport& report) {
+  find_climb();
   if (!kkt_.apply_dual(direction_, image_, seconds_)) return false;
   if (ascent_.conjugate) std::copy(image_.begin(), image_.end(), image_before_.begin());
-  double curvature = 0, size = 0;
+  double up = 0, curvature = 0, size = 0;
   for (std::size_t r = 0; r < direction_.size(); ++r) {
-    up += direction_[r] * theta_[r];
+    up += direction_[r] * gradient_[r];
     curvature += direction_[r] * image_[r];
     size += direction_[r] * kkt_.dual_preconditioner()[r] * direction_[r];
   }
@@ -243,63 +267,51 @@ bool DualAscent::climb(std::span<double> lambda, SaddleReport& report) {
   constexpr double no_curvature = 1e-13;
   const double omega = curvature > no_curvature * size ? up / curvature : 0;
   for (std::size_t r = 0; r < direction_.size(); ++r) {
-    if (any_clamped_ && clamped_[r])
-      lambda[r] = effective_[r];
+    if (any_held_ && held_[r])
+      now_.lambda[r] = effective_[r];
     else
-      lambda[r] += omega * direction_[r];
+      now_.lambda[r] += omega * direction_[r];
   }
-  if (s.has_bounds()) clamp(lambda);
+  if (system().has_bounds()) evaluator_.clamp(now_.lambda);
   return true;
 }
 
-SaddleReport DualAscent::solve(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
-                               std::span<double> lambda) {
+SaddleReport DualAscent::solve_from_here(const SaddleProblem& p, const SaddleOptions& options) {
   const std::int64_t linear_before = kkt_.linear_iterations();
-  SaddleReport report = ascend(p, options, x, lambda);
+  SaddleReport report = ascend(p, options);
   report.linear_iterations = kkt_.linear_iterations() - linear_before;
   return report;
 }
 
-SaddleReport DualAscent::ascend(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
-                                std::span<double> lambda) {
+SaddleReport DualAscent::ascend(const SaddleProblem& p, const SaddleOptions& options) {
   const std::int64_t linear_before = kkt_.linear_iterations();
   SaddleReport report;
-  if (!all_finite(p)) {
-    report.status = SaddleStatus::not_finite;
+  const auto fail = [&](SaddleStatus status) {
+    report.status = status;
     return report;
-  }
-  begin(p);
+  };
   factored_ = false;
   has_before_ = false;
-  definiteness_ = options.definiteness;
-  clamp(lambda);
-  const System& s = *system_;
+  const System& s = system();
   if (ascent_.augmented && s.rows() > 0) {
     Kkt::Values values;
-    if (!s.laws().empty()) apply_laws(p, lambda, true);
-    values.tangent = tangent_;
+    if (!s.laws().empty()) evaluator_.apply_laws(p, now_.lambda, true);
+    values.tangent = evaluator_.tangents();
     const auto w = kkt_.dual_weights(values);
     std::copy(w.begin(), w.end(), weights_.begin());
   }
   // The multipliers' steps converge linearly: many cheap ones, unless at their rate they cannot arrive.
   const int most = 20 * options.max_iterations;
   constexpr int window = 40;
-  double tolerance = 1e-2, farther = std::numeric_limits<double>::infinity();
+  constexpr double loosest = 1e-2;
+  double farther = std::numeric_limits<double>::infinity();
   for (int k = 0;; ++k) {
-    assembly_.renew_lag(x, lambda, p.prescribed);
-    assembly_.evaluate(Want::gradient, Definiteness::exact, x, lambda, p.prescribed);
-    if (k == 0 && !std::isfinite(assembly_.energy())) {
-      report.status = SaddleStatus::not_finite;
-      return report;
-    }
-    assemble_residual(p, x, lambda);
-    const bool done = balanced(p, options, x, lambda, report);
-    if (!done && interrupted()) {
-      report.status = SaddleStatus::cancelled;
-      return report;
-    }
+    evaluator_.renew_lag(p, now_);
+    evaluator_.evaluate(p, Want::gradient, Definiteness::exact, now_);
+    if (k == 0 && !std::isfinite(now_.energy)) return fail(SaddleStatus::not_finite);
+    const bool done = evaluator_.balanced(p, options, now_, report);
+    if (!done && interrupted()) return fail(SaddleStatus::cancelled);
     report.linear_iterations = kkt_.linear_iterations() - linear_before;
-    tolerance = std::min(1e-2, 0.1 * report.force_residual);
     if (k > 0 && progress) progress(k, report.force_residual, report.row_residual);
     if (done) return report;
     const double left = std::max(report.force_residual / options.force_tolerance,
@@ -309,19 +321,18 @@ SaddleReport DualAscent::ascend(const SaddleProblem& p, const SaddleOptions& opt
       too_slow = left >= farther || std::log(left) / std::log(farther / left) * window > most - k;
       farther = left;
     }
-    const bool spent = (options.budget > 0 && report.iterations + report.corrections >= options.budget) ||
-                       report.inner_work() >= options.most_inner_work();
-    if (k >= most || too_slow || spent) {
-      report.status = SaddleStatus::iteration_limit;
-      if (too_slow) report.message = "the multipliers converge too slowly";
+    if (too_slow) report.message = "the multipliers converge too slowly";
+    const bool out_of_budget =
+        (options.budget > 0 && report.iterations + report.corrections >= options.budget) ||
+        report.inner_work() >= options.most_inner_work();
+    if (k >= most || too_slow || out_of_budget) return fail(SaddleStatus::iteration_limit);
+    const double tolerance = std::min(loosest, 0.1 * report.force_residual);
+    if (!minimize(p, options, std::max(0.1 * options.force_tolerance, tolerance), report)) {
+      // Whoever keeps the last iterate asks what is there.
+      evaluator_.evaluate(p, Want::gradient, Definiteness::exact, now_);
       return report;
     }
-    if (!minimize(p, options, std::max(0.1 * options.force_tolerance, tolerance), x, lambda, report))
-      return report;
-    if (s.rows() > 0 && !climb(lambda, report)) {
-      report.status = failed_as(SaddleStatus::singular);
-      return report;
-    }
+    if (s.rows() > 0 && !climb(report)) return fail(failed_as(SaddleStatus::singular));
   }
 }
 

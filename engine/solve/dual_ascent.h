@@ -27,26 +27,35 @@ class DualAscent : public SaddlePoint {
   DualAscent(std::shared_ptr<const System> system, const Parallel& parallel,
              std::unique_ptr<LinearSolver> solver, DualAscentOptions options);
 
-  SaddleReport solve(const SaddleProblem& problem, const SaddleOptions& options, std::span<Vec3> x,
-                     std::span<double> lambda) override;
+ protected:
+  SaddleReport solve_from_here(const SaddleProblem& problem, const SaddleOptions& options) override;
 
  private:
-  SaddleReport ascend(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
-                      std::span<double> lambda);
-  void evaluate(const SaddleProblem& p, Want want, std::span<const Vec3> x, std::span<const double> lambda);
-  double lagrangian(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda) const;
-  bool minimize(const SaddleProblem& p, const SaddleOptions& options, double tolerance, std::span<Vec3> x,
-                std::span<const double> lambda, SaddleReport& report);
-  bool climb(std::span<double> lambda, SaddleReport& report);
+  struct Descent;
+  SaddleReport ascend(const SaddleProblem& p, const SaddleOptions& options);
+  void evaluate(const SaddleProblem& p, Want want, Iterate& it);
+  double lagrangian(const SaddleProblem& p, const Iterate& it) const;
+  bool minimize(const SaddleProblem& p, const SaddleOptions& options, double tolerance, SaddleReport& report);
+  bool spent(const SaddleOptions& options, const Descent& d, int iteration, const SaddleReport& report) const;
+  bool direction(const SaddleProblem& p, Descent& d, SaddleReport& report);
+  bool search(const SaddleProblem& p, Descent& d, SaddleReport& report);
+  bool backtrack(const SaddleProblem& p, Descent& d, double tau, SaddleReport& report);
+  double value_at(const SaddleProblem& p, double tau, SaddleReport& report);
+  bool left_all_bounds() const;
+  bool climb(SaddleReport& report);
+  void find_climb();
   void conjugate();
 
   DualAscentOptions ascent_;
   bool factored_ = false;    // in this solve
   bool has_before_ = false;  // a direction to be conjugate to, in this solve
-  std::vector<double> effective_, direction_, image_, weights_;
+  bool any_held_ = false;
+  std::vector<std::uint8_t> held_;  // rows at a bound; empty: no row has bounds
+  // Multipliers lambda + W theta, projected; the ascent's direction, its image and the gradient; W.
+  std::vector<double> effective_, direction_, image_, gradient_, weights_;
   std::vector<double> before_, image_before_;  // conjugate: the last direction and its image
-  std::vector<Vec3> dx_, rhs_, x_trial_, node_work_, reaction_;
-  std::vector<Vec3> x_before_, dx_before_;  // of a venture
+  std::vector<Vec3> dx_, rhs_, node_work_, reaction_;
+  std::vector<Vec3> x_before_, dx_before_;  // of the watchdog
 };
 
 }  // namespace isochor

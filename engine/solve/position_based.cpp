@@ -33,8 +33,8 @@ std::string PositionBased::unsupported(const System& system) {
 
 PositionBased::PositionBased(std::shared_ptr<const System> system, const Parallel& parallel,
                              std::unique_ptr<LinearSolver> solver, int sweeps)
-    : SaddlePoint(std::move(system), parallel, std::move(solver)), parallel_(parallel), sweeps_(sweeps) {
-  const System& s = *system_;
+    : SaddlePoint(system, parallel, std::move(solver)), parallel_(parallel), sweeps_(sweeps) {
+  const System& s = *system;
   const PoolPlace& total = s.totals();
   energy_.resize(at(total.energy));
   energy_strength_.resize(at(total.energy));
@@ -74,7 +74,7 @@ PositionBased::PositionBased(std::shared_ptr<const System> system, const Paralle
 
 // Greedy in the order of pools, then of rows.
 void PositionBased::color() {
-  const System& s = *system_;
+  const System& s = system();
   std::vector<ColorSet> taken(at(s.nodes()), ColorSet{});
   std::vector<Index> color_of_row(at(s.rows()), most_colors), colors;
   std::vector<Constraint> all;
@@ -126,22 +126,22 @@ void PositionBased::color() {
 
 // The part of a vector in the free directions of a node.
 Vec3 PositionBased::mobile(Index node, const Vec3& v) const {
-  const Index b = system_->basis_of()[at(node)];
+  const Index b = system().basis_of()[at(node)];
   if (b < 0) return v;
-  const FreeBasis& basis = system_->free_bases()[at(b)];
+  const FreeBasis& basis = system().free_bases()[at(b)];
   Vec3 q = transposed_times(basis.directions, v);
   for (int c = basis.count; c < 3; ++c) q[c] = 0;
   return basis.directions * q;
 }
 
 void PositionBased::evaluate_stencil(Index pool, Index stencil, std::span<const Vec3> x) {
-  const System& s = *system_;
+  const System& s = system();
   const StencilPool& stencils = *s.parts().stencil_pools[at(pool)];
   const PoolPlace& place = s.places()[at(pool)];
   const std::size_t count = at(stencils.stencils()),
                     functions = static_cast<std::size_t>(stencils.functions());
   const std::size_t nodes = stencils.nodes().item.size();
-  StencilRequest q = assembly_.request(pool, Want::gradient, x);
+  StencilRequest q = slots().request(pool, Want::gradient, x);
   q.function_multiplier =
       std::span<const double>(zero_).subspan(static_cast<std::size_t>(place.function), count * functions);
   q.begin = stencil;
@@ -158,7 +158,7 @@ void PositionBased::evaluate_stencil(Index pool, Index stencil, std::span<const 
 
 // With C = sqrt(2 energy), energy = C^2 / 2: the multiplier L of C heads for C itself.
 void PositionBased::visit_energy(const Constraint& c, std::span<Vec3> x) {
-  const System& s = *system_;
+  const System& s = system();
   evaluate_stencil(c.pool, c.item, x);
   const PoolPlace& place = s.places()[at(c.pool)];
   const std::size_t own = at(place.energy + c.item);
@@ -184,7 +184,7 @@ void PositionBased::visit_energy(const Constraint& c, std::span<Vec3> x) {
 
 void PositionBased::visit_row(Index row, std::span<Vec3> x, std::span<double> lambda,
                               std::span<const double> target) {
-  const System& s = *system_;
+  const System& s = system();
   for (const Index k : row_stencils_[row]) evaluate_stencil(row_pool_[at(row)], k, x);
   const auto sum = [&](const Gather& gather, std::int64_t to, const auto& slots, auto total) {
     for (auto k = gather.offset[static_cast<std::size_t>(to)];
@@ -230,17 +230,17 @@ void PositionBased::visit(const Constraint& c, std::span<Vec3> x, std::span<doub
 // Where inertia and forces that are known beforehand carry the nodes: loads, and rows with given multipliers
 // at the old positions. Given coordinates go to their targets.
 void PositionBased::start(const SaddleProblem& p, std::span<Vec3> x, std::span<const double> lambda) {
-  const System& s = *system_;
+  const System& s = system();
   const auto old = p.increment.before;
-  assembly_.renew_lag(old, lambda, p.prescribed);
+  slots().renew_lag(old, lambda, p.prescribed);
   std::copy(p.force.begin(), p.force.end(), force_.begin());
   if (s.prescribed_rows() > 0) {
     // Forces with these multipliers less those without.
     const std::span<const double> none = std::span<const double>(zero_).first(at(s.prescribed_rows()));
-    std::vector<Vec3>& work = gap_;
+    std::vector<Vec3>& work = gap_.way;
     for (const bool with : {true, false}) {
-      assembly_.evaluate(Want::gradient, Definiteness::exact, old, lambda, with ? p.prescribed : none);
-      assembly_.residual(work);
+      slots().evaluate(Want::gradient, Definiteness::exact, old, lambda, with ? p.prescribed : none);
+      slots().residual(work);
       for (std::size_t i = 0; i < work.size(); ++i) force_[i] -= (with ? 1.0 : -1.0) * work[i];
     }
   }
@@ -253,19 +253,18 @@ void PositionBased::start(const SaddleProblem& p, std::span<Vec3> x, std::span<c
   }
 }
 
-SaddleReport PositionBased::solve(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
-                                  std::span<double> lambda) {
+SaddleReport PositionBased::solve_from_here(const SaddleProblem& p, const SaddleOptions& options) {
   SaddleReport report;
   const auto fail = [&](SaddleStatus status) {
     report.status = status;
     return report;
   };
-  if (!all_finite(p)) return fail(SaddleStatus::not_finite);
-  begin(p);
+  std::vector<Vec3>& x = now_.x;
+  std::vector<double>& lambda = now_.lambda;
   start(p, x, lambda);
   std::fill(lambda.begin(), lambda.end(), 0.0);
   std::fill(energy_strength_.begin(), energy_strength_.end(), 0.0);
-  clamp(lambda);
+  evaluator_.clamp(lambda);
   for (int sweep = 0; sweep < sweeps_; ++sweep) {
     if (interrupted()) return fail(SaddleStatus::cancelled);
     for (std::size_t c = 0; c + 1 < color_start_.size(); ++c) {
@@ -280,9 +279,8 @@ SaddleReport PositionBased::solve(const SaddleProblem& p, const SaddleOptions& o
     ++report.iterations;
   }
   if (!std::all_of(x.begin(), x.end(), finite)) return fail(SaddleStatus::diverged);
-  assembly_.evaluate(Want::gradient, Definiteness::exact, x, lambda, p.prescribed);
-  assemble_residual(p, x, lambda);
-  balanced(p, options, x, lambda, report);
+  evaluator_.evaluate(p, Want::gradient, Definiteness::exact, now_);
+  evaluator_.balanced(p, options, now_, report);
   // Elements may be left turned over where their energy has no value; it is the sweeps that bring them back.
   if (!std::isfinite(report.force_residual) || !std::isfinite(report.row_residual)) {
     return fail(SaddleStatus::diverged);

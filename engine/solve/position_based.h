@@ -18,11 +18,11 @@ class PositionBased : public SaddlePoint {
   // Empty, or what in a system this method has no answer for.
   static std::string unsupported(const System& system);
 
-  // Needs inertia. `converged` means that the sweeps are done and all is finite; the residuals tell the rest.
-  SaddleReport solve(const SaddleProblem& problem, const SaddleOptions& options, std::span<Vec3> x,
-                     std::span<double> lambda) override;
-
   int colors() const { return static_cast<int>(color_start_.size()) - 1; }
+
+ protected:
+  // Needs inertia. `converged` means that the sweeps are done and all is finite; the residuals tell the rest.
+  SaddleReport solve_from_here(const SaddleProblem& problem, const SaddleOptions& options) override;
 
  private:
   // An energy of a stencil, or a row.

@@ -58,7 +58,7 @@ bool EndCheck::moved_from_outside(const SaddleProblem& problem) {
   Assembly& assembly = context_.methods.chosen().assembly();
   double energy[2] = {};
   for (const int end : {0, 1}) {
-    const double t = end == 0 ? problem.t0 : problem.t1;
+    const double t = end == 0 ? problem.increment.t0 : problem.increment.t1;
     assembly.set_increment({0, {}, t, t}, problem.memory);
     assembly.evaluate(Want::value, Definiteness::exact, state.x, state.lambda, problem.prescribed);
     assembly.row_values(row_values_[static_cast<std::size_t>(end)]);
@@ -76,7 +76,7 @@ void EndCheck::begin(const SaddleProblem& problem, bool jumps) {
   // As at the end, with what friction holds on to here.
   method.assembly().set_increment(problem.increment, problem.memory);
   if (context_.system().has_lag()) method.assembly().renew_lag(state.x, state.lambda, problem.prescribed);
-  const SaddlePoint::Stored stored = method.stored_at(problem, state.x, state.lambda);
+  const StoredEnergy stored = method.stored_at(problem, state.x, state.lambda);
   // Supports and targets on their way do work; so may whatever a host has put out of balance.
   if (!stored.met || !std::isfinite(stored.energy)) return;
   before_.known = true;
@@ -85,7 +85,7 @@ void EndCheck::begin(const SaddleProblem& problem, bool jumps) {
 }
 
 // Why the energy at the end (`stored` there) cannot be; empty where it can, or where outside forces did work.
-std::string EndCheck::energy_gained(double h, const Trial& trial, const SaddlePoint::Stored& stored) {
+std::string EndCheck::energy_gained(double h, const Trial& trial, const StoredEnergy& stored) {
   if (!before_.known) return {};
   const State& state = context_.state;
   const WorldOptions& options = context_.options;
@@ -107,7 +107,7 @@ std::string EndCheck::energy_gained(double h, const Trial& trial, const SaddlePo
 
 // What a budget cut short is on its way to its rows and its energy; but cells that go flat leave a matrix
 // that the next step cannot use.
-bool EndCheck::may_stay_unfinished(const SaddlePoint::Stored& stored, SaddleReport& report) const {
+bool EndCheck::may_stay_unfinished(const StoredEnergy& stored, SaddleReport& report) const {
   const bool bounds = context_.system().has_bounds();
   const bool flatter =
       verdict_.min_J < (bounds ? nearly_flat_with_bounds : nearly_flat) && verdict_.min_J < look().min_J;
@@ -148,8 +148,8 @@ bool EndCheck::admits(double h, const SaddleProblem& problem, const Trial& trial
   }
   if (!admits_cells(end, report)) return false;
   SaddlePoint& method = context_.methods.chosen();
-  const SaddlePoint::Stored stored = part == 1 ? method.stored(problem, trial.x, trial.lambda)
-                                               : method.stored_at(problem, end, trial.lambda);
+  const StoredEnergy stored =
+      part == 1 ? method.stored(problem) : method.stored_at(problem, end, trial.lambda);
   if (!std::isfinite(stored.energy)) return refuse("the energy has no value there");
   if (report.status != SaddleStatus::converged) return may_stay_unfinished(stored, report);
   const bool sweeps = context_.options.method == Method::position_based;

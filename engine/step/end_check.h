@@ -31,8 +31,8 @@ class EndCheck {
 
  private:
   bool moved_from_outside(const SaddleProblem& problem);
-  bool may_stay_unfinished(const SaddlePoint::Stored& stored, SaddleReport& report) const;
-  std::string energy_gained(double h, const Trial& trial, const SaddlePoint::Stored& stored);
+  bool may_stay_unfinished(const StoredEnergy& stored, SaddleReport& report) const;
+  std::string energy_gained(double h, const Trial& trial, const StoredEnergy& stored);
   std::string far_away(const SaddleReport& solve, double moved) const;
 
   StepContext context_;
@@ -41,7 +41,7 @@ class EndCheck {
   struct {
     bool known = false;  // false: outside forces do work, or there is nothing to compare with
     double kinetic = 0;
-    SaddlePoint::Stored stored;
+    StoredEnergy stored;
   } before_;
   State ahead_;                                    // of dynamics: the state that an end would make
   std::vector<Vec3> momentum_;                     // one a node

@@ -36,8 +36,7 @@ SaddleProblem IncrementData::problem(const System& system, const State& state, d
   problem.target = target_;
   problem.prescribed = prescribed_;
   problem.position = position_;
-  problem.t0 = state.t;
-  problem.t1 = t;
+
   problem.memory = std::span<const double>(state.extra).first(at(system.memory()));
   problem.increment = {0, state.x, state.t, t};
   return problem;

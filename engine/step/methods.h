@@ -2,8 +2,8 @@
 // stand in where it does not get there.
 #pragma once
 
+#include "engine/solve/newton/path_follower.h"
 #include "engine/solve/saddle_point.h"
-#include "engine/step/path_follower.h"
 #include "isochor/options.h"
 
 namespace isochor {

@@ -108,7 +108,7 @@ SaddleReport Stepper::climb(Attempt& a) {
   Climb c{a.h, a.problem, a.left, a.from_guess, false, false, gives_up_on(Method::automatic), {}};
   const auto stand_ins = context_.methods.stand_ins();
   const Method last = stand_ins.empty() ? Method::automatic : stand_ins.back();
-  show_progress(a.problem.t1);
+  show_progress(a.problem.increment.t1);
   c.stopped = surroundings_.passing(a.problem.increment, trial_.x, Surroundings::Passing::stop) > 0;
   if (c.own_given_up) {
     c.stuck = true;

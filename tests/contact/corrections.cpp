@@ -26,7 +26,7 @@ Outcome pressed(double compliance, double friction, FrictionCoupling coupling, b
   out.lambda.assign(at(s.rows()), 0);
   const std::vector<Vec3> before = out.x;
   SaddleProblem problem = data.problem();
-  problem.t1 = 1;
+  problem.increment.t1 = 1;
   problem.increment = {0, before, 0, 1};
   SaddleOptions options;
   options.corrections = corrections;

@@ -198,7 +198,7 @@ TEST_CASE("Newton's method with coupled friction ends quadratically, with lagged
     const std::vector<Vec3> before = x;
     std::vector<double> lambda(at(s.rows()), 0);
     SaddleProblem problem = data.problem();
-    problem.t1 = 1;
+    problem.increment.t1 = 1;
     problem.increment = {0, before, 0, 1};
     SaddleOptions options;
     options.corrections = false;

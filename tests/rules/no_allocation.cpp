@@ -40,7 +40,7 @@ TEST_CASE("a warm solve with friction allocates nothing, its corrections include
     std::vector<double> lambda(at(s.rows()), 0);
     SaddleProblem problem;
     const auto solve = [&](double t) {
-      problem.t1 = t;
+      problem.increment.t1 = t;
       problem.increment = {0, before, 0, t};
       SaddleOptions options;
       options.force_tolerance = options.row_tolerance = 1e-12;

@@ -3,7 +3,7 @@
 //
 // A step is searched on the size of the residual,
 //   R^2 = sum |r_i|^2 / k_i + sum D_r (projection(lambda + theta / D) - lambda)^2 + sum k_i |gap_i|^2,
-// an energy: the norms of SaddlePoint::measure with metrics in place of measures. An exact Newton step
+// an energy: the norms of Evaluator::measure with metrics in place of measures. An exact Newton step
 // descends it as long as the set of rows held at bounds stays. Where two fifths of a step do not make it
 // smaller, the lag is held, symmetric and with the merit of Newton: for one iteration, one more with every
 // time, and until that set has stayed over a full step. An iteration in which nothing makes the matrix
@@ -20,19 +20,15 @@ class UnsymmetricNewton final : public Newton {
   UnsymmetricNewton(std::shared_ptr<const System> system, const Parallel& parallel,
                     std::unique_ptr<LinearSolver> solver, std::unique_ptr<LinearSolver> unsymmetric);
 
-  SaddleReport solve(const SaddleProblem& problem, const SaddleOptions& options, std::span<Vec3> x,
-                     std::span<double> lambda) override;
+ protected:
+  SaddleReport solve_from_here(const SaddleProblem& problem, const SaddleOptions& options) override;
 
  private:
-  void evaluate_here(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda);
-  bool coupled_step(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
-                    std::span<double> lambda, SaddleReport& report);
-  bool lagged_step(const SaddleProblem& p, std::span<Vec3> x, std::span<double> lambda, SaddleReport& report);
-  bool find_coupled(std::span<const double> lambda, SaddleReport& report);
-  bool factor_coupled(SaddleReport& report);
-  bool polish(const SaddleProblem& p, const SaddleOptions& options, std::span<Vec3> x,
-              std::span<double> lambda, SaddleReport& report);
-  double residual_energy(std::span<const double> lambda, double gap_left) const;
+  bool coupled_step(const SaddleProblem& p, const SaddleOptions& options, SaddleReport& report);
+  bool lagged_step(const SaddleProblem& p, SaddleReport& report);
+  bool find_coupled(SaddleReport& report);
+  bool polish(const SaddleProblem& p, const SaddleOptions& options, SaddleReport& report);
+  double residual_energy(const Iterate& it, double gap_left) const;
 
   bool factors_alone_ = false;             // steps on symmetric factors have failed in this solve
   std::vector<std::uint8_t> held_before_;  // rows held at a bound, an iteration ago

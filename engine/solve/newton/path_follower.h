@@ -32,13 +32,18 @@ class PathFollower : public Newton {
 
  private:
   double product(const PathVector& a, const PathVector& b) const;
-  bool factor_here(const ProblemAt& problem_at, double t, std::span<const Vec3> x,
-                   std::span<const double> lambda, SaddleReport& report);
-  bool slope(const ProblemAt& problem_at, double t, double step, std::span<const Vec3> x,
-             std::span<const double> lambda, SaddleReport& report);
+  bool factor_here(const ProblemAt& problem_at, double t, SaddleReport& report);
+  bool slope(const ProblemAt& problem_at, double t, double step, SaddleReport& report);
+  bool find_tangent(const ProblemAt& problem_at, double t, std::span<const double> secant,
+                    SaddleReport& report);
+  bool correct_across(const ProblemAt& problem_at, double step, double& t, SaddleReport& report);
+  void move(double part, const PathVector& v, double& t);
+  static double forward(std::span<const double> secant) { return secant.back() < 0 ? -1 : 1; }
 
+  // For derivatives of the loads, which are piecewise linear in t.
+  static constexpr double load_difference = 1e-3;
   double load_weight_ = 0;
-  PathVector correction_, slope_, tangent_, trial_;
+  PathVector correction_, slope_, tangent_;
 };
 
 }  // namespace isochor
