@@ -69,7 +69,7 @@ class Solver {
     for (const EffectPtr& e : supports) instances_.push_back(need(e->build(builder_)));
     system_ = need(System::compile(need(builder_.finish(true))));
     assembly_ = std::make_unique<Assembly>(system_, parallel_);
-    kkt_ = std::make_unique<Kkt>(system_, parallel_, make_linear_solver(Solver::automatic));
+    kkt_ = std::make_unique<Kkt>(system_, parallel_, make_linear_solver(isochor::Solver::automatic));
     x_ = system_->parts().rest;
     const std::size_t n = x_.size();
     r_.resize(n), dx_.resize(n), stiffness_.resize(n), magnitude_.resize(n);

@@ -355,8 +355,8 @@ std::optional<Finding> SceneJudge::support(const World& world, std::size_t def) 
   const bool in_the_middle = a.type == AnalysisType::dynamics && a.scheme == SchemeWord::implicit_midpoint;
   if (d.treatment == SupportTreatment::stiffness || in_the_middle) return {};
   if (d.treatment == SupportTreatment::multiplier && a.options.method == Method::position_based) return {};
-  const auto x = world.positions(d.where.body);
-  const auto X = world.rest_positions(d.where.body);
+  const auto x = world.positions(BodyId{d.where.body.number()});
+  const auto X = world.rest_positions(BodyId{d.where.body.number()});
   for (const Index i : supported_[def]) {
     const Vec3 target = target_of(d, world.time(), X[static_cast<std::size_t>(i)]);
     const Vec3 off = x[static_cast<std::size_t>(i)] - target;
@@ -376,7 +376,7 @@ std::optional<Finding> SceneJudge::obstacle(const BuiltScene& built, std::size_t
   const World& world = built.world;
   if (c.initial_overlap == InitialOverlap::resolve && world.time() < c.resolve_time * (1 + 1e-9)) return {};
   if (std::isinf(limits_.rows)) return {};
-  const auto x = world.positions(c.body);
+  const auto x = world.positions(BodyId{c.body.number()});
   double deepest = 0;
   Index node = 0;
   for (const Index i : touching_[contact]) {

@@ -27,7 +27,7 @@ struct Run {
 double distance(const Run& a, const Run& b) {
   double worst = 0;
   for (const BodyId body : a.bodies) {
-    const auto x = a.world.positions(body), y = b.world.positions(body);
+    const auto x = a.world.positions(body), y = b.world.positions(BodyId{body.number()});
     for (std::size_t i = 0; i < x.size(); ++i)
       worst = std::max(worst, std::sqrt(dot(x[i] - y[i], x[i] - y[i])));
   }

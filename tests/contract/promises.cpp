@@ -317,7 +317,7 @@ TEST_CASE("gauges of force and pressure do the work that their rows do") {
       CHECK(work(d) == Approx(pressure.value * slope(probe, effect, "volume", d)).epsilon(1e-6));
       ++pressures;
     }
-    if (quantities.count("tension")) {
+    if (quantities.count("tension") && quantities.count("length")) {
       CHECK(quantities.at("tension").unit == "N");
       CHECK(quantities.at("length").unit == "m");
       CHECK(work(d) ==

@@ -24,7 +24,7 @@ struct Bar {
   // Along the lower side, a little inside.
   CableDef below() const {
     CableDef def;
-    def.body = body;
+    def.body = BodyId{0};
     for (const double x : {0.003, 0.05, 0.1, 0.15, 0.197}) def.points.push_back({x, 0.02, 0.004});
     return def;
   }
