@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# A sample of the tests under the address, undefined-behavior and thread sanitizers, at -O1:
+#   asan   all of isochor_sample_tests (tests/CMakeLists.txt says what is in it)
+#   tsan   those of its tests that step worlds on threads of their own: oneTBB is not compiled with the sanitizer, so
+#          what it synchronizes would look like races
+# Arguments choose: cmake/sanitizers.sh [asan] [tsan]
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+which=("$@")
+[[ ${#which[@]} -eq 0 ]] && which=(asan tsan)
+for preset in "${which[@]}"; do
+  cmake --preset "$preset" -DISOCHOR_TESTS=ON -DISOCHOR_APPS=OFF >/dev/null
+  cmake --build "build-$preset" --target isochor_sample_tests
+  echo "$preset"
+  if [[ $preset == tsan ]]; then
+    TSAN_OPTIONS=halt_on_error=1 "build-$preset/tests/isochor_sample_tests" --filenames-as-tags "[#host_services]"
+  else
+    ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 "build-$preset/tests/isochor_sample_tests"
+  fi
+done
