@@ -81,6 +81,7 @@ class TractionEffect final : public EffectSource {
     const Vec3 traction =
         dot(def_.total_force, def_.total_force) > 0 ? (1 / total) * def_.total_force : def_.traction;
     std::vector<std::pair<Index, Vec3>> forces;
+    forces.reserve(area.size());
     for (const auto& [node, a] : area) forces.emplace_back(node, a * traction);
     return add_dead_load(builder, def_.name, std::move(forces), def_.amount);
   }

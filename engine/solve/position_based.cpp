@@ -35,7 +35,7 @@ PositionBased::PositionBased(std::shared_ptr<const System> system, const Paralle
                              std::unique_ptr<LinearSolver> solver, int sweeps)
     : SaddlePoint(system, parallel, std::move(solver)), parallel_(parallel), sweeps_(sweeps) {
   const System& s = *system;
-  const PoolPlace& total = s.totals();
+  const PoolPlace& total = s.pools().total;
   energy_.resize(at(total.energy));
   energy_strength_.resize(at(total.energy));
   value_.resize(static_cast<std::size_t>(total.function));
@@ -103,8 +103,8 @@ void PositionBased::color() {
   std::vector<Index> nodes;
   for (Index r = 0; r < s.rows(); ++r) {
     nodes.clear();
-    for (auto d = s.row_jacobian_begin()[at(r)]; d < s.row_jacobian_begin()[at(r) + 1]; ++d) {
-      nodes.push_back(s.jacobian_ends()[d][1]);
+    for (auto d = s.gathers().row_begin[at(r)]; d < s.gathers().row_begin[at(r) + 1]; ++d) {
+      nodes.push_back(s.gathers().jacobian_ends[d][1]);
     }
     ColorSet used{};
     for (const Index k : row_compliance_[r]) {
@@ -137,7 +137,7 @@ Vec3 PositionBased::mobile(Index node, const Vec3& v) const {
 void PositionBased::evaluate_stencil(Index pool, Index stencil, std::span<const Vec3> x) {
   const System& s = system();
   const StencilPool& stencils = *s.parts().stencil_pools[at(pool)];
-  const PoolPlace& place = s.places()[at(pool)];
+  const PoolPlace& place = s.pools().slots[at(pool)];
   const std::size_t count = at(stencils.stencils()),
                     functions = static_cast<std::size_t>(stencils.functions());
   const std::size_t nodes = stencils.nodes().item.size();
@@ -160,7 +160,7 @@ void PositionBased::evaluate_stencil(Index pool, Index stencil, std::span<const 
 void PositionBased::visit_energy(const Constraint& c, std::span<Vec3> x) {
   const System& s = system();
   evaluate_stencil(c.pool, c.item, x);
-  const PoolPlace& place = s.places()[at(c.pool)];
+  const PoolPlace& place = s.pools().slots[at(c.pool)];
   const std::size_t own = at(place.energy + c.item);
   const double energy = energy_[own];
   // Nothing to push against, or outside of where the energy is defined: the neighbors have to help.
@@ -194,17 +194,17 @@ void PositionBased::visit_row(Index row, std::span<Vec3> x, std::span<double> la
     }
     return total;
   };
-  double theta = sum(s.row_gather(), row, value_, 0.0) - target[at(row)], give = 0;
+  double theta = sum(s.gathers().row, row, value_, 0.0) - target[at(row)], give = 0;
   for (const Index k : row_compliance_[row]) {
     const ComplianceEntry& e = s.compliance()[at(k)];
     const double c = compliance_[at(k)];
     theta -= c * lambda[at(e.row == row ? e.col : e.row)];
     if (e.row == e.col) give += c;
   }
-  const auto begin = s.row_jacobian_begin()[at(row)], end = s.row_jacobian_begin()[at(row) + 1];
+  const auto begin = s.gathers().row_begin[at(row)], end = s.gathers().row_begin[at(row) + 1];
   for (auto d = begin; d < end; ++d) {
-    const Index i = s.jacobian_ends()[d][1];
-    const Vec3 g = mobile(i, sum(s.jacobian_gather(), static_cast<std::int64_t>(d), jacobian_, Vec3{}));
+    const Index i = s.gathers().jacobian_ends[d][1];
+    const Vec3 g = mobile(i, sum(s.gathers().jacobian, static_cast<std::int64_t>(d), jacobian_, Vec3{}));
     give += inverse_mass_[at(i)] * dot(g, g);
   }
   if (!(give > 0) || !std::isfinite(theta)) return;
@@ -213,8 +213,8 @@ void PositionBased::visit_row(Index row, std::span<Vec3> x, std::span<double> la
   const double change = next - lambda[at(row)];
   lambda[at(row)] = next;
   for (auto d = begin; d < end; ++d) {
-    const Index i = s.jacobian_ends()[d][1];
-    const Vec3 g = mobile(i, sum(s.jacobian_gather(), static_cast<std::int64_t>(d), jacobian_, Vec3{}));
+    const Index i = s.gathers().jacobian_ends[d][1];
+    const Vec3 g = mobile(i, sum(s.gathers().jacobian, static_cast<std::int64_t>(d), jacobian_, Vec3{}));
     x[at(i)] -= (inverse_mass_[at(i)] * change) * g;
   }
 }

@@ -36,7 +36,7 @@ void gather_scalars(const Gather& g, std::int64_t begin, std::span<const double>
 
 Assembly::Assembly(std::shared_ptr<const System> system, const Parallel& parallel)
     : system_(std::move(system)), parallel_(parallel) {
-  const PoolPlace& total = system_->totals();
+  const PoolPlace& total = system_->pools().total;
   energy_.resize(at(total.energy));
   value_.resize(static_cast<std::size_t>(total.function));
   multiplier_.resize(static_cast<std::size_t>(total.function));
@@ -53,7 +53,7 @@ Assembly::Assembly(std::shared_ptr<const System> system, const Parallel& paralle
 // Multiplier of every function: sum over rows of weight times multiplier.
 void Assembly::gather_multipliers(std::span<const double> lambda, std::span<const double> prescribed,
                                   std::span<double> out) const {
-  const Gather& g = system_->function_gather();
+  const Gather& g = system_->gathers().function;
   const Index m = system_->rows();
   parallel_.run(as_index(g.count()), kGatherGrain, [&](Index b, Index e) {
     for (Index f = b; f < e; ++f) {
@@ -78,7 +78,7 @@ void Assembly::renew_lag(std::span<const Vec3> x, std::span<const double> lambda
 
 StencilRequest Assembly::request(Index p, Want want, std::span<const Vec3> x) const {
   const StencilPool& pool = *system_->parts().stencil_pools[at(p)];
-  const auto first = static_cast<std::size_t>(system_->places()[at(p)].function);
+  const auto first = static_cast<std::size_t>(system_->pools().slots[at(p)].function);
   const auto functions = at(pool.stencils()) * static_cast<std::size_t>(pool.functions());
   StencilRequest q{want,
                    Definiteness::exact,
@@ -109,7 +109,7 @@ void Assembly::evaluate_lagging(Want want, std::span<const Vec3> x) {
 
 void Assembly::evaluate_pool(std::size_t p, Want want, Definiteness definiteness, std::span<const Vec3> x) {
   const StencilPool& pool = *system_->parts().stencil_pools[p];
-  const PoolPlace& place = system_->places()[p];
+  const PoolPlace& place = system_->pools().slots[p];
   const auto slots = pool.nodes().item.size();
   const auto functions = static_cast<std::size_t>(pool.functions());
   const auto stencils = at(pool.stencils());
@@ -142,15 +142,15 @@ double Assembly::absolute_energy() const {
 }
 
 void Assembly::row_values(std::span<double> phi) const {
-  gather_scalars(system_->row_gather(), 0, value_, phi, parallel_);
+  gather_scalars(system_->gathers().row, 0, value_, phi, parallel_);
 }
 
 void Assembly::prescribed_row_values(std::span<double> phi) const {
-  gather_scalars(system_->row_gather(), system_->rows(), value_, phi, parallel_);
+  gather_scalars(system_->gathers().row, system_->rows(), value_, phi, parallel_);
 }
 
 void Assembly::residual(std::span<Vec3> r) const {
-  const Gather& g = system_->residual_gather();
+  const Gather& g = system_->gathers().residual;
   parallel_.run(system_->nodes(), kGatherGrain, [&](Index b, Index e) {
     for (Index i = b; i < e; ++i) {
       Vec3 sum{};
@@ -164,7 +164,7 @@ void Assembly::residual(std::span<Vec3> r) const {
 }
 
 void Assembly::residual_magnitude(std::span<double> r) const {
-  const Gather& g = system_->residual_gather();
+  const Gather& g = system_->gathers().residual;
   parallel_.run(system_->nodes(), kGatherGrain, [&](Index b, Index e) {
     for (Index i = b; i < e; ++i) {
       double sum = 0;
@@ -180,8 +180,8 @@ void Assembly::residual_magnitude(std::span<double> r) const {
 void Assembly::constraint_force(std::span<const double> lambda, std::span<Vec3> r) const {
   // Serial: rows meet at nodes. Only reports and studies ask for it.
   std::fill(r.begin(), r.end(), Vec3{});
-  const Gather& g = system_->jacobian_gather();
-  const auto ends = system_->jacobian_ends();
+  const Gather& g = system_->gathers().jacobian;
+  const auto& ends = system_->gathers().jacobian_ends;
   for (std::size_t d = 0; d < ends.size(); ++d) {
     Vec3 sum{};
     for (auto k = static_cast<std::size_t>(g.offset[d]); k < static_cast<std::size_t>(g.offset[d + 1]); ++k) {
@@ -195,7 +195,7 @@ void Assembly::hessian_times(std::span<const Vec3> v, std::span<Vec3> y) {
   const auto& pools = system_->parts().stencil_pools;
   for (std::size_t p = 0; p < pools.size(); ++p) {
     const StencilPool& pool = *pools[p];
-    const PoolPlace& place = system_->places()[p];
+    const PoolPlace& place = system_->pools().slots[p];
     parallel_.run(pool.stencils(), pool.grain(), [&](Index begin, Index end) {
       for (Index s = begin; s < end; ++s) {
         const auto nodes = pool.nodes()[s];
@@ -212,7 +212,7 @@ void Assembly::hessian_times(std::span<const Vec3> v, std::span<Vec3> y) {
       }
     });
   }
-  const Gather& g = system_->residual_gather();
+  const Gather& g = system_->gathers().residual;
   for (Index i = 0; i < system_->nodes(); ++i) {
     Vec3 sum{};
     const auto to = static_cast<std::size_t>(g.offset[at(i) + 1]);
@@ -225,8 +225,8 @@ void Assembly::hessian_times(std::span<const Vec3> v, std::span<Vec3> y) {
 
 void Assembly::jacobian_times(std::span<const Vec3> v, std::span<double> y) const {
   std::fill(y.begin(), y.end(), 0.0);
-  const Gather& g = system_->jacobian_gather();
-  const auto ends = system_->jacobian_ends();
+  const Gather& g = system_->gathers().jacobian;
+  const auto& ends = system_->gathers().jacobian_ends;
   for (std::size_t d = 0; d < ends.size(); ++d) {
     Vec3 sum{};
     for (auto k = static_cast<std::size_t>(g.offset[d]); k < static_cast<std::size_t>(g.offset[d + 1]); ++k) {
@@ -238,7 +238,7 @@ void Assembly::jacobian_times(std::span<const Vec3> v, std::span<double> y) cons
 
 void Assembly::gather_block(std::int64_t block, Mat3& sum) const {
   constexpr std::size_t ahead = 16;
-  const Gather& g = system_->block_gather();
+  const Gather& g = system_->gathers().block;
   const auto to = static_cast<std::size_t>(g.offset[static_cast<std::size_t>(block) + 1]);
   for (auto k = static_cast<std::size_t>(g.offset[static_cast<std::size_t>(block)]); k < to; ++k) {
     const std::int64_t source = g.source[k];
@@ -289,9 +289,9 @@ void to_free_basis(const System& s, Index i, Index j, Mat3& block) {
 void Assembly::kkt_values(double mass_scale, std::span<double> values) const {
   const System& s = *system_;
   const auto& first = s.first_unknown();
-  parallel_.run(as_index(s.block_gather().count()), kGatherGrain, [&](Index begin, Index end) {
+  parallel_.run(as_index(s.gathers().block.count()), kGatherGrain, [&](Index begin, Index end) {
     for (Index d = begin; d < end; ++d) {
-      const auto [i, j] = s.block_nodes()[at(d)];
+      const auto [i, j] = s.gathers().block_ends[at(d)];
       const Index ki = first[at(i) + 1] - first[at(i)], kj = first[at(j) + 1] - first[at(j)];
       if (ki == 0 || kj == 0) continue;
       Mat3 block;
@@ -299,20 +299,20 @@ void Assembly::kkt_values(double mass_scale, std::span<double> values) const {
       if (i == j) {
         for (int k = 0; k < 3; ++k) block(k, k) += mass_scale * s.parts().mass[at(i)];
       }
-      if (!s.block_mass().empty()) {
-        for (int k = 0; k < 3; ++k) block(k, k) += mass_scale * s.block_mass()[at(d)];
+      if (!s.gathers().block_mass.empty()) {
+        for (int k = 0; k < 3; ++k) block(k, k) += mass_scale * s.gathers().block_mass[at(d)];
       }
       to_free_basis(s, i, j, block);
       for (Index c = 0; c < kj; ++c) {
-        auto to = static_cast<std::size_t>(s.block_place()[3 * at(d) + at(c)]);
+        auto to = static_cast<std::size_t>(s.matrix().block[3 * at(d) + at(c)]);
         for (Index r = i == j ? c : 0; r < ki; ++r) values[to++] = block(r, c);
       }
     }
   });
-  const Gather& g = s.jacobian_gather();
+  const Gather& g = s.gathers().jacobian;
   parallel_.run(as_index(g.count()), kGatherGrain, [&](Index begin, Index end) {
     for (Index d = begin; d < end; ++d) {
-      const auto [row, node] = s.jacobian_ends()[at(d)];
+      const auto [row, node] = s.gathers().jacobian_ends[at(d)];
       const Index kj = first[at(node) + 1] - first[at(node)];
       if (kj == 0 || s.row_unknown()[at(row)] < 0) continue;
       Vec3 sum{};
@@ -323,10 +323,10 @@ void Assembly::kkt_values(double mass_scale, std::span<double> values) const {
       const Index b = s.basis_of()[at(node)];
       if (b >= 0) sum = transposed_times(s.free_bases()[at(b)].directions, sum);
       for (Index c = 0; c < kj; ++c)
-        values[static_cast<std::size_t>(s.jacobian_place()[3 * at(d) + at(c)])] = sum[c];
+        values[static_cast<std::size_t>(s.matrix().jacobian[3 * at(d) + at(c)])] = sum[c];
     }
   });
-  const auto places = s.compliance_place();
+  const auto& places = s.matrix().compliance;
   for (const std::int64_t p : places) {
     if (p >= 0) values[static_cast<std::size_t>(p)] = 0;
   }
@@ -338,9 +338,9 @@ void Assembly::kkt_values(double mass_scale, std::span<double> values) const {
 void Assembly::mass_times(std::span<const Vec3> v, std::span<Vec3> y) const {
   const System& s = *system_;
   for (std::size_t i = 0; i < v.size(); ++i) y[i] = s.parts().mass[i] * v[i];
-  for (std::size_t d = 0; d < s.block_mass().size(); ++d) {
-    const auto [i, j] = s.block_nodes()[d];
-    const double m = s.block_mass()[d];
+  for (std::size_t d = 0; d < s.gathers().block_mass.size(); ++d) {
+    const auto [i, j] = s.gathers().block_ends[d];
+    const double m = s.gathers().block_mass[d];
     y[at(i)] += m * v[at(j)];
     if (i != j) y[at(j)] += m * v[at(i)];
   }
@@ -348,7 +348,7 @@ void Assembly::mass_times(std::span<const Vec3> v, std::span<Vec3> y) const {
 
 void Assembly::row_jacobian(std::span<Vec3> jacobian) const {
   const System& s = *system_;
-  const Gather& g = s.jacobian_gather();
+  const Gather& g = s.gathers().jacobian;
   parallel_.run(as_index(g.count()), kGatherGrain, [&](Index begin, Index end) {
     for (Index d = begin; d < end; ++d) {
       Vec3 sum{};
@@ -356,7 +356,7 @@ void Assembly::row_jacobian(std::span<Vec3> jacobian) const {
       for (auto k = static_cast<std::size_t>(g.offset[at(d)]); k < to; ++k) {
         sum += g.weight[k] * jacobian_[static_cast<std::size_t>(g.source[k])];
       }
-      const Index b = s.basis_of()[at(s.jacobian_ends()[at(d)][1])];
+      const Index b = s.basis_of()[at(s.gathers().jacobian_ends[at(d)][1])];
       jacobian[at(d)] = b >= 0 ? transposed_times(s.free_bases()[at(b)].directions, sum) : sum;
     }
   });
@@ -364,12 +364,12 @@ void Assembly::row_jacobian(std::span<Vec3> jacobian) const {
 
 std::span<const double> Assembly::function_multipliers(Index pool) const {
   const StencilPool& p = *system_->parts().stencil_pools[at(pool)];
-  return {multiplier_.data() + system_->places()[at(pool)].function,
+  return {multiplier_.data() + system_->pools().slots[at(pool)].function,
           at(p.stencils()) * static_cast<std::size_t>(p.functions())};
 }
 
 void Assembly::stiffness_diagonal(std::span<double> k) const {
-  const auto ends = system_->block_nodes();
+  const auto& ends = system_->gathers().block_ends;
   for (std::size_t d = 0; d < ends.size(); ++d) {
     if (ends[d][0] != ends[d][1]) continue;
     Mat3 block;

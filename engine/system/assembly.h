@@ -52,7 +52,7 @@ class Assembly {
   // Values of the saddle-point matrix in kkt() order: [K + mass_scale M, G^T; G, -C] (Want::hessian).
   void kkt_values(double mass_scale, std::span<double> values) const;
 
-  // Jacobian vectors of System::jacobian_ends() in free directions, for rows that are not in the matrix.
+  // Jacobian vectors of Gathers::jacobian_ends in free directions, for rows that are not in the matrix.
   void row_jacobian(std::span<Vec3> jacobian) const;
 
   // Multipliers of the functions of one stencil pool at the last evaluation (Want::gradient or more).

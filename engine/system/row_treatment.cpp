@@ -55,7 +55,7 @@ bool RowTreatments::couples(const RowPool& pool) const {
 bool RowTreatments::few_wide_rows(const RowPool& pool) const {
   constexpr Index few = 16;
   if (pool.rows() == 0 || pool.rows() > few) return false;
-  const Index first = system_.first_row_[at(index_of(pool))];
+  const Index first = system_.row_data_.first[at(index_of(pool))];
   for (Index r = first; r < first + pool.rows(); ++r) {
     if (nodes_of_row(r) > local_row_nodes) return true;
   }
@@ -70,97 +70,90 @@ Index RowTreatments::index_of(const RowPool& pool) const {
 }
 
 std::size_t RowTreatments::nodes_of_row(Index row) const {
-  return system_.row_jacobian_begin_[at(row) + 1] - system_.row_jacobian_begin_[at(row)];
+  return system_.gathers_.row_begin[at(row) + 1] - system_.gathers_.row_begin[at(row)];
 }
 
-// Which rows are unknowns of the matrix.
 Result<void> RowTreatments::sort() {
-  constexpr Index border_limit = 64;
-  system_.row_unknown_.assign(at(system_.rows_), -1);
-  system_.diagonal_compliance_.assign(at(system_.rows_), 0);
-  for (std::size_t k = 0; k < system_.compliance_.size(); ++k) {
-    const ComplianceEntry& e = system_.compliance_[k];
-    if (e.row == e.col) system_.diagonal_compliance_[at(e.row)] = k;
-  }
-  system_.row_jacobian_begin_.assign(at(system_.rows_) + 1, 0);
-  std::vector<Index> augmented;
-  for (const auto& [row, node] : system_.jacobian_ends_) ++system_.row_jacobian_begin_[at(row) + 1];
-  for (std::size_t r = 0; r < at(system_.rows_); ++r)
-    system_.row_jacobian_begin_[r + 1] += system_.row_jacobian_begin_[r];
-  for (std::size_t p = 0; p < system_.parts_.row_pools.size(); ++p) {
-    const RowPool& pool = *system_.parts_.row_pools[p];
+  const auto& pools = system_.parts_.row_pools;
+  TreatedRows& rows = system_.treated_;
+  for (std::size_t p = 0; p < pools.size(); ++p) {
+    const RowPool& pool = *pools[p];
     if (pool.law != RowLaw::compliant) continue;
-    const std::string who = "rows \"" + std::string(pool.name()) + "\": ";
-    if (couples(pool) && pool.treatment != RowTreatment::automatic &&
-        pool.treatment != RowTreatment::saddle) {
-      return Error{
-          who +
-          "their part of the matrix is unsymmetric (they are coupled), so they are unknowns of it; use "
-          "treatment saddle or automatic"};
-    }
-    if (system_.couples() && pool.treatment == RowTreatment::bordered) {
-      return Error{who +
-                   "bordered rows want a symmetric matrix, and an effect of this scene is coupled; use "
-                   "treatment saddle for them, or that effect lagged"};
-    }
-    if (pool.treatment == RowTreatment::bordered && bounded(pool)) {
-      return Error{who +
-                   "rows with bounds change between free and held, so they are not bordered; use treatment "
-                   "saddle or automatic"};
-    }
-    if (pool.treatment == RowTreatment::condensed) {
-      if (auto r = check_condensed(pool, who); !r) return r;
-    }
-    if (pool.treatment == RowTreatment::bordered &&
-        static_cast<Index>(system_.bordered_rows_.size()) + pool.rows() > border_limit) {
-      return Error{who + std::to_string(pool.rows()) +
-                   " rows to border; each costs a solve a factorization, so " + std::to_string(border_limit) +
-                   " in a scene are the limit; use treatment saddle"};
-    }
+    if (auto r = check_wish(pool); !r) return r;
     const RowTreatment treatment = choose(pool);
     auto& list = list_of(treatment);
     for (Index r = 0; r < pool.rows(); ++r) {
-      const Index row = system_.first_row_[p] + r;
+      const Index row = system_.row_data_.first[p] + r;
       list.push_back(row);
       if (treatment == RowTreatment::augmented && nodes_of_row(row) <= local_row_nodes)
-        augmented.push_back(row);
+        rows.augmented.row.push_back(row);
     }
   }
-  system_.filled_rows_ = system_.condensed_rows_;
-  system_.filled_rows_.insert(system_.filled_rows_.end(), augmented.begin(), augmented.end());
-  for (std::size_t k = 0; k < system_.kept_rows_.size(); ++k) {
-    system_.row_unknown_[at(system_.kept_rows_[k])] = system_.free_unknowns() + static_cast<Index>(k);
+  rows.unknown.assign(at(system_.rows()), -1);
+  for (std::size_t k = 0; k < rows.kept.size(); ++k)
+    rows.unknown[at(rows.kept[k])] = system_.free_unknowns() + static_cast<Index>(k);
+  collect_compliance();
+  return {};
+}
+
+// What a pool asks for and cannot have.
+Result<void> RowTreatments::check_wish(const RowPool& pool) const {
+  const std::string who = "rows \"" + std::string(pool.name()) + "\": ";
+  if (couples(pool) && pool.treatment != RowTreatment::automatic && pool.treatment != RowTreatment::saddle) {
+    return Error{
+        who +
+        "their part of the matrix is unsymmetric (they are coupled), so they are unknowns of it; use "
+        "treatment saddle or automatic"};
   }
-  std::vector<Index> border(at(system_.rows_), -1);
-  for (std::size_t k = 0; k < system_.bordered_rows_.size(); ++k)
-    border[at(system_.bordered_rows_[k])] = static_cast<Index>(k);
-  for (std::size_t k = 0; k < system_.compliance_.size(); ++k) {
-    const ComplianceEntry& e = system_.compliance_[k];
-    if (border[at(e.row)] >= 0)
-      system_.border_compliance_.push_back({k, border[at(e.row)], border[at(e.col)]});
+  if (pool.treatment == RowTreatment::condensed) return check_condensed(pool, who);
+  if (pool.treatment != RowTreatment::bordered) return {};
+  if (system_.couples()) {
+    return Error{who +
+                 "bordered rows want a symmetric matrix, and an effect of this scene is coupled; use "
+                 "treatment saddle for them, or that effect lagged"};
   }
-  std::vector<bool> dual(at(system_.rows_), false);
-  for (const Index r : system_.dual_rows_) dual[at(r)] = true;
-  for (std::size_t k = 0; k < system_.compliance_.size(); ++k) {
-    if (dual[at(system_.compliance_[k].row)]) system_.dual_compliance_.push_back(k);
+  if (bounded(pool)) {
+    return Error{who +
+                 "rows with bounds change between free and held, so they are not bordered; use treatment "
+                 "saddle or automatic"};
+  }
+  if (static_cast<Index>(system_.treated_.bordered.size()) + pool.rows() > most_bordered_rows) {
+    return Error{who + std::to_string(pool.rows()) +
+                 " rows to border; each costs a solve a factorization, so " +
+                 std::to_string(most_bordered_rows) + " in a scene are the limit; use treatment saddle"};
   }
   return {};
+}
+
+// The compliance entries of bordered and of dual rows. Those of one entry are of one pool, and treated alike.
+void RowTreatments::collect_compliance() {
+  TreatedRows& rows = system_.treated_;
+  std::vector<Index> border(at(system_.rows()), -1);
+  for (std::size_t k = 0; k < rows.bordered.size(); ++k) border[at(rows.bordered[k])] = static_cast<Index>(k);
+  std::vector<bool> dual(at(system_.rows()), false);
+  for (const Index r : rows.dual) dual[at(r)] = true;
+  const auto entries = system_.compliance();
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const ComplianceEntry& e = entries[k];
+    if (border[at(e.row)] >= 0) rows.border_compliance.push_back({k, border[at(e.row)], border[at(e.col)]});
+    if (dual[at(e.row)]) rows.dual_compliance.push_back(k);
+  }
 }
 
 std::vector<Index>& RowTreatments::list_of(RowTreatment treatment) {
   switch (treatment) {
     case RowTreatment::condensed:
-      return system_.condensed_rows_;
+      return system_.treated_.condensed.row;
     case RowTreatment::bordered:
-      return system_.bordered_rows_;
+      return system_.treated_.bordered;
     case RowTreatment::dual:
     case RowTreatment::augmented:
-      return system_.dual_rows_;
+      return system_.treated_.dual;
     case RowTreatment::automatic:
     case RowTreatment::saddle:
       break;
   }
-  return system_.kept_rows_;
+  return system_.treated_.kept;
 }
 
 Result<void> RowTreatments::check_condensed(const RowPool& pool, const std::string& who) {

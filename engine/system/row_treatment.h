@@ -6,6 +6,7 @@
 namespace isochor {
 
 inline constexpr std::size_t local_row_nodes = 256;  // a row over more nodes does not count as local
+inline constexpr Index most_bordered_rows = 64;      // of a scene: each costs a solve a factorization
 
 class RowTreatments {
  public:
@@ -16,7 +17,9 @@ class RowTreatments {
   Result<void> sort();
 
  private:
+  Result<void> check_wish(const RowPool& pool) const;
   RowTreatment choose(const RowPool& pool) const;
+  void collect_compliance();
   bool couples(const RowPool& pool) const;
   bool few_wide_rows(const RowPool& pool) const;
   Index index_of(const RowPool& pool) const;

@@ -112,7 +112,7 @@ class SystemCompiler {
   void place_pools() {
     PoolPlace at_place;
     for (const auto& pool : s_->parts_.stencil_pools) {
-      s_->places_.push_back(at_place);
+      s_->pools_.slots.push_back(at_place);
       const std::int64_t slots = static_cast<std::int64_t>(pool->nodes().item.size());
       at_place.energy += pool->stencils();
       at_place.function += static_cast<std::int64_t>(pool->stencils()) * pool->functions();
@@ -120,38 +120,39 @@ class SystemCompiler {
       at_place.jacobian += slots * pool->functions();
       if (pool->has_hessian()) at_place.hessian += pool->hessian_offset().back();
     }
-    s_->totals_ = at_place;
+    s_->pools_.total = at_place;
   }
 
   void number_rows() {
     for (const auto& pool : s_->parts_.row_pools) {
-      Index& count = pool->law == RowLaw::compliant ? s_->rows_ : s_->prescribed_rows_;
-      s_->first_row_.push_back(count);
+      Index& count = pool->law == RowLaw::compliant ? s_->row_data_.compliant : s_->row_data_.prescribed;
+      s_->row_data_.first.push_back(count);
       count += pool->rows();
       if (pool->law == RowLaw::compliant) {
-        s_->row_metric_.insert(s_->row_metric_.end(), pool->metric.begin(), pool->metric.end());
-        s_->row_measure_.insert(s_->row_measure_.end(), pool->measure.begin(), pool->measure.end());
+        s_->row_data_.metric.insert(s_->row_data_.metric.end(), pool->metric.begin(), pool->metric.end());
+        s_->row_data_.measure.insert(s_->row_data_.measure.end(), pool->measure.begin(), pool->measure.end());
       }
     }
   }
 
   Result<void> number_unknowns() {
     const Index n = s_->nodes();
-    s_->basis_of_.assign(at(n), -1);
+    s_->unknowns_.basis_of.assign(at(n), -1);
     for (const auto& p : s_->parts_.prescribers) {
       for (const PrescribedNode& c : p->nodes) {
-        if (s_->basis_of_[at(c.node)] >= 0) {
+        if (s_->unknowns_.basis_of[at(c.node)] >= 0) {
           return Error{std::string(p->name()) + ": node " + std::to_string(c.node) +
                        " is given by two prescribers of one scene; merge them first"};
         }
-        s_->basis_of_[at(c.node)] = static_cast<Index>(s_->bases_.size());
-        s_->bases_.push_back(free_basis(c));
+        s_->unknowns_.basis_of[at(c.node)] = static_cast<Index>(s_->unknowns_.bases.size());
+        s_->unknowns_.bases.push_back(free_basis(c));
       }
     }
-    s_->first_unknown_.assign(1, 0);
+    s_->unknowns_.first.assign(1, 0);
     for (Index i = 0; i < n; ++i) {
-      const Index b = s_->basis_of_[at(i)];
-      s_->first_unknown_.push_back(s_->first_unknown_.back() + (b < 0 ? 3 : s_->bases_[at(b)].count));
+      const Index b = s_->unknowns_.basis_of[at(i)];
+      s_->unknowns_.first.push_back(s_->unknowns_.first.back() +
+                                    (b < 0 ? 3 : s_->unknowns_.bases[at(b)].count));
     }
     return {};
   }
@@ -192,15 +193,15 @@ class SystemCompiler {
 
   // Number of a row in the gather lists: compliant rows first, then prescribed ones.
   Index gather_row(std::size_t pool, Index row) const {
-    const Index base = s_->parts_.row_pools[pool]->law == RowLaw::compliant ? 0 : s_->rows_;
-    return base + s_->first_row_[pool] + row;
+    const Index base = s_->parts_.row_pools[pool]->law == RowLaw::compliant ? 0 : s_->row_data_.compliant;
+    return base + s_->row_data_.first[pool] + row;
   }
 
   void gather_rows() {
     std::vector<Contribution> to_row, to_function;
     for (std::size_t p = 0; p < s_->parts_.row_pools.size(); ++p) {
       const RowPool& pool = *s_->parts_.row_pools[p];
-      const std::int64_t base = s_->places_[at(pool.stencil_pool)].function;
+      const std::int64_t base = s_->pools_.slots[at(pool.stencil_pool)].function;
       for (Index r = 0; r < pool.rows(); ++r) {
         for (Index k = pool.map.offset[at(r)]; k < pool.map.offset[at(r) + 1]; ++k) {
           const std::int64_t f = base + pool.map.item[at(k)];
@@ -210,8 +211,8 @@ class SystemCompiler {
         }
       }
     }
-    fill_gather(to_row, s_->rows_ + s_->prescribed_rows_, s_->row_gather_);
-    fill_gather(to_function, s_->totals_.function, s_->function_gather_);
+    fill_gather(to_row, s_->row_data_.compliant + s_->row_data_.prescribed, s_->gathers_.row);
+    fill_gather(to_function, s_->pools_.total.function, s_->gathers_.function);
   }
 
   // Gather lists for destinations 0..count-1, the key being the destination.
@@ -232,12 +233,12 @@ class SystemCompiler {
     for (std::size_t p = 0; p < s_->parts_.stencil_pools.size(); ++p) {
       const auto& item = s_->parts_.stencil_pools[p]->nodes().item;
       for (std::size_t k = 0; k < item.size(); ++k) {
-        c.push_back(
-            {static_cast<std::uint64_t>(item[k]), s_->places_[p].gradient + static_cast<std::int64_t>(k), 1});
+        c.push_back({static_cast<std::uint64_t>(item[k]),
+                     s_->pools_.slots[p].gradient + static_cast<std::int64_t>(k), 1});
       }
     }
-    fill_gather(c, s_->nodes(), s_->residual_gather_);
-    s_->residual_gather_.weight.clear();
+    fill_gather(c, s_->nodes(), s_->gathers_.residual);
+    s_->gathers_.residual.weight.clear();
   }
 
   void gather_blocks() {
@@ -247,7 +248,7 @@ class SystemCompiler {
       if (!pool.has_hessian()) continue;
       for (Index s = 0; s < pool.stencils(); ++s) {
         const auto nodes = pool.nodes()[s];
-        std::int64_t slot = s_->places_[p].hessian + pool.hessian_offset()[at(s)];
+        std::int64_t slot = s_->pools_.slots[p].hessian + pool.hessian_offset()[at(s)];
         for (std::size_t a = 0; a < nodes.size(); ++a) {
           for (std::size_t b = 0; b <= a; ++b, ++slot) {
             // The destination is the lower triangle; a block met the other way round is marked by complement.
@@ -265,11 +266,11 @@ class SystemCompiler {
     for (const auto& e : c) {
       if ((e.key >> 32) == (e.key & 0xffffffffu)) has_diagonal[e.key & 0xffffffffu] = true;
     }
-    gather_by_key(c, false, s_->block_gather_, s_->block_nodes_);
+    gather_by_key(c, false, s_->gathers_.block, s_->gathers_.block_ends);
     for (Index i = 0; i < s_->nodes(); ++i) {
       if (has_diagonal[at(i)]) continue;
-      s_->block_nodes_.push_back({i, i});
-      s_->block_gather_.offset.push_back(s_->block_gather_.offset.back());
+      s_->gathers_.block_ends.push_back({i, i});
+      s_->gathers_.block.offset.push_back(s_->gathers_.block.offset.back());
     }
     place_mass();
   }
@@ -279,14 +280,14 @@ class SystemCompiler {
     auto& entries = s_->parts_.mass_entries;
     if (entries.empty()) return;
     std::vector<std::pair<std::uint64_t, std::size_t>> blocks;
-    for (std::size_t d = 0; d < s_->block_nodes_.size(); ++d)
-      blocks.push_back({key_of(s_->block_nodes_[d][0], s_->block_nodes_[d][1]), d});
+    for (std::size_t d = 0; d < s_->gathers_.block_ends.size(); ++d)
+      blocks.push_back({key_of(s_->gathers_.block_ends[d][0], s_->gathers_.block_ends[d][1]), d});
     std::sort(blocks.begin(), blocks.end());
-    s_->block_mass_.assign(s_->block_nodes_.size(), 0);
+    s_->gathers_.block_mass.assign(s_->gathers_.block_ends.size(), 0);
     for (const MassEntry& e : entries) {
       const auto found =
           std::lower_bound(blocks.begin(), blocks.end(), std::pair(key_of(e.row, e.col), std::size_t{0}));
-      s_->block_mass_[found->second] += e.value;
+      s_->gathers_.block_mass[found->second] += e.value;
     }
   }
 
@@ -296,7 +297,7 @@ class SystemCompiler {
       const RowPool& rows = *s_->parts_.row_pools[p];
       if (rows.law != RowLaw::compliant) continue;
       const StencilPool& pool = *s_->parts_.stencil_pools[at(rows.stencil_pool)];
-      const PoolPlace& place = s_->places_[at(rows.stencil_pool)];
+      const PoolPlace& place = s_->pools_.slots[at(rows.stencil_pool)];
       const Index functions = pool.functions();
       for (Index r = 0; r < rows.rows(); ++r) {
         for (Index k = rows.map.offset[at(r)]; k < rows.map.offset[at(r) + 1]; ++k) {
@@ -306,31 +307,40 @@ class SystemCompiler {
                                      static_cast<std::int64_t>(pool.nodes().offset[at(s)]) * functions +
                                      static_cast<std::int64_t>(f) * static_cast<std::int64_t>(nodes.size());
           for (std::size_t a = 0; a < nodes.size(); ++a) {
-            c.push_back({key_of(s_->first_row_[p] + r, nodes[a]), first + static_cast<std::int64_t>(a),
+            c.push_back({key_of(s_->row_data_.first[p] + r, nodes[a]), first + static_cast<std::int64_t>(a),
                          rows.weight[at(k)]});
           }
         }
       }
     }
-    gather_by_key(c, true, s_->jacobian_gather_, s_->jacobian_ends_);
+    gather_by_key(c, true, s_->gathers_.jacobian, s_->gathers_.jacobian_ends);
+    auto& begin = s_->gathers_.row_begin;
+    begin.assign(at(s_->row_data_.compliant) + 1, 0);
+    for (const auto& [row, node] : s_->gathers_.jacobian_ends) ++begin[at(row) + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
   }
 
   void collect_compliance() {
-    std::vector<bool> diagonal(at(s_->rows_), false);
+    std::vector<bool> diagonal(at(s_->row_data_.compliant), false);
     for (std::size_t p = 0; p < s_->parts_.row_pools.size(); ++p) {
       const RowPool& pool = *s_->parts_.row_pools[p];
       if (pool.law != RowLaw::compliant) continue;
-      const Index base = s_->first_row_[p];
+      const Index base = s_->row_data_.first[p];
       // The tangent of a law takes the place of constant values.
       const LawRows* law = pool.facets().law;
-      if (law) s_->laws_.push_back({static_cast<Index>(p), s_->compliance_.size()});
+      if (law) s_->row_data_.laws.push_back({static_cast<Index>(p), s_->row_data_.compliance.size()});
       for (const ComplianceEntry& e : pool.compliance) {
-        s_->compliance_.push_back({base + e.row, base + e.col, law ? 0.0 : e.value});
+        s_->row_data_.compliance.push_back({base + e.row, base + e.col, law ? 0.0 : e.value});
         if (e.row == e.col) diagonal[at(base + e.row)] = true;
       }
     }
-    for (Index r = 0; r < s_->rows_; ++r) {
-      if (!diagonal[at(r)]) s_->compliance_.push_back({r, r, 0.0});
+    for (Index r = 0; r < s_->row_data_.compliant; ++r) {
+      if (!diagonal[at(r)]) s_->row_data_.compliance.push_back({r, r, 0.0});
+    }
+    s_->row_data_.own_compliance.assign(at(s_->row_data_.compliant), 0);
+    for (std::size_t k = 0; k < s_->row_data_.compliance.size(); ++k) {
+      const ComplianceEntry& e = s_->row_data_.compliance[k];
+      if (e.row == e.col) s_->row_data_.own_compliance[at(e.row)] = k;
     }
     release_idle_rows();
   }
@@ -339,26 +349,23 @@ class SystemCompiler {
   // would be empty. With their own metric as compliance they have a multiplier, which nothing feels but the
   // reactions of the supports.
   void release_idle_rows() {
-    std::vector<double> size(at(s_->rows_), 0);
-    std::vector<std::size_t> own(at(s_->rows_), 0);
-    for (std::size_t k = 0; k < s_->compliance_.size(); ++k) {
-      const ComplianceEntry& e = s_->compliance_[k];
+    std::vector<double> size(at(s_->row_data_.compliant), 0);
+    for (const ComplianceEntry& e : s_->row_data_.compliance) {
       size[at(e.row)] += std::abs(e.value);
       size[at(e.col)] += std::abs(e.value);
-      if (e.row == e.col) own[at(e.row)] = k;
     }
-    for (const auto& [pool, entry] : s_->laws_) {
-      const auto first = s_->first_row_[at(pool)], count = s_->parts_.row_pools[at(pool)]->rows();
+    for (const auto& [pool, entry] : s_->row_data_.laws) {
+      const auto first = s_->row_data_.first[at(pool)], count = s_->parts_.row_pools[at(pool)]->rows();
       std::fill_n(size.begin() + first, count, 1.0);
     }
-    std::vector<std::uint8_t> acts(at(s_->rows_), 0);
-    for (const auto& [row, node] : s_->jacobian_ends_) {
-      if (s_->first_unknown_[at(node) + 1] > s_->first_unknown_[at(node)]) acts[at(row)] = 1;
+    std::vector<std::uint8_t> acts(at(s_->row_data_.compliant), 0);
+    for (const auto& [row, node] : s_->gathers_.jacobian_ends) {
+      if (s_->unknowns_.first[at(node) + 1] > s_->unknowns_.first[at(node)]) acts[at(row)] = 1;
     }
-    for (Index r = 0; r < s_->rows_; ++r) {
+    for (Index r = 0; r < s_->row_data_.compliant; ++r) {
       if (acts[at(r)] || size[at(r)] > 0) continue;
-      s_->compliance_[own[at(r)]].value = s_->row_metric_[at(r)];
-      s_->idle_rows_.push_back(r);
+      s_->row_data_.compliance[s_->row_data_.own_compliance[at(r)]].value = s_->row_data_.metric[at(r)];
+      s_->row_data_.idle.push_back(r);
     }
   }
 
@@ -367,28 +374,29 @@ class SystemCompiler {
     for (std::size_t p = 0; p < s_->parts_.row_pools.size(); ++p) {
       const RowPool& pool = *s_->parts_.row_pools[p];
       if (pool.law != RowLaw::compliant || (pool.lower.empty() && pool.upper.empty())) continue;
-      s_->row_lower_.resize(at(s_->rows_), -infinity);
-      s_->row_upper_.resize(at(s_->rows_), infinity);
-      const auto first = s_->first_row_[p];
-      std::copy(pool.lower.begin(), pool.lower.end(), s_->row_lower_.begin() + first);
-      std::copy(pool.upper.begin(), pool.upper.end(), s_->row_upper_.begin() + first);
+      s_->row_data_.lower.resize(at(s_->row_data_.compliant), -infinity);
+      s_->row_data_.upper.resize(at(s_->row_data_.compliant), infinity);
+      const auto first = s_->row_data_.first[p];
+      std::copy(pool.lower.begin(), pool.lower.end(), s_->row_data_.lower.begin() + first);
+      std::copy(pool.upper.begin(), pool.upper.end(), s_->row_data_.upper.begin() + first);
       if (!std::isfinite(pool.largest_overshoot)) continue;
-      s_->row_overshoot_.resize(at(s_->rows_), infinity);
-      std::fill_n(s_->row_overshoot_.begin() + first, pool.rows(), pool.largest_overshoot);
+      s_->row_data_.overshoot.resize(at(s_->row_data_.compliant), infinity);
+      std::fill_n(s_->row_data_.overshoot.begin() + first, pool.rows(), pool.largest_overshoot);
     }
   }
 
   // Unknowns ascend with nodes and then with rows, so columns come out sorted without a look at their
   // entries.
   void build_kkt() {
-    const auto& unknown = s_->row_unknown_;
+    const auto& unknown = s_->treated_.unknown;
     std::vector<std::uint64_t> blocks, row_entries, compliance_entries;  // keys: column, row
-    for (const auto& [i, j] : s_->block_nodes_) blocks.push_back(key_of(j, i));
-    for_filled_blocks([&](Index i, Index j) { blocks.push_back(key_of(j, i)); });
-    for (const auto& [row, node] : s_->jacobian_ends_) {
+    for (const auto& [i, j] : s_->gathers_.block_ends) blocks.push_back(key_of(j, i));
+    for (const FilledRows* rows : {&s_->treated_.condensed, &s_->treated_.augmented})
+      for_filled_blocks(*rows, [&](Index i, Index j) { blocks.push_back(key_of(j, i)); });
+    for (const auto& [row, node] : s_->gathers_.jacobian_ends) {
       if (unknown[at(row)] >= 0) row_entries.push_back(key_of(node, unknown[at(row)]));
     }
-    for (const ComplianceEntry& e : s_->compliance_) {
+    for (const ComplianceEntry& e : s_->row_data_.compliance) {
       if (unknown[at(e.row)] >= 0)
         compliance_entries.push_back(key_of(unknown[at(e.col)], unknown[at(e.row)]));
     }
@@ -396,9 +404,9 @@ class SystemCompiler {
       sort_by_destination(*keys);
       keys->erase(std::unique(keys->begin(), keys->end()), keys->end());
     }
-    SymmetricPattern& kkt = s_->kkt_;
-    const auto& first = s_->first_unknown_;
-    kkt.size = s_->free_unknowns() + static_cast<Index>(s_->kept_rows_.size());
+    SymmetricPattern& kkt = s_->matrix_.pattern;
+    const auto& first = s_->unknowns_.first;
+    kkt.size = s_->free_unknowns() + static_cast<Index>(s_->treated_.kept.size());
     kkt.row.reserve(9 * blocks.size() + 3 * row_entries.size() + compliance_entries.size());
     kkt.column_start = {0};
     const auto end_of = [](const std::vector<std::uint64_t>& keys, std::size_t from, Index column) {
@@ -433,31 +441,32 @@ class SystemCompiler {
   // Visits all blocks that rows add to the stiffness. Nodes of a row ascend, so the blocks (i, j) are those
   // of the lower triangle.
   template <class Visit>
-  void for_filled_blocks(Visit visit) const {
-    for (const Index row : s_->filled_rows_) {
-      const auto begin = s_->row_jacobian_begin_[at(row)], end = s_->row_jacobian_begin_[at(row) + 1];
+  void for_filled_blocks(const FilledRows& rows, Visit visit) const {
+    for (const Index row : rows.row) {
+      const auto begin = s_->gathers_.row_begin[at(row)], end = s_->gathers_.row_begin[at(row) + 1];
       for (auto a = begin; a < end; ++a) {
-        for (auto b = begin; b <= a; ++b) visit(s_->jacobian_ends_[a][1], s_->jacobian_ends_[b][1]);
+        for (auto b = begin; b <= a; ++b)
+          visit(s_->gathers_.jacobian_ends[a][1], s_->gathers_.jacobian_ends[b][1]);
       }
     }
   }
 
   std::int64_t place(Index row, Index col) const {
-    const auto& kkt = s_->kkt_;
+    const auto& kkt = s_->matrix_.pattern;
     const auto begin = kkt.row.begin() + kkt.column_start[at(col)];
     const auto end = kkt.row.begin() + kkt.column_start[at(col) + 1];
     return std::lower_bound(begin, end, row) - kkt.row.begin();
   }
 
   void locate_entries() {
-    const auto& first = s_->first_unknown_;
+    const auto& first = s_->unknowns_.first;
     const auto locate = [&](std::vector<std::int64_t>& places, Index row_or_node, Index node, bool is_row) {
       for (Index k = 0; k < 3; ++k) {
         const Index c = first[at(node)] + k;
         if (c >= first[at(node) + 1]) {
           places.push_back(-1);
         } else if (is_row) {
-          const Index u = s_->row_unknown_[at(row_or_node)];
+          const Index u = s_->treated_.unknown[at(row_or_node)];
           places.push_back(u < 0 ? -1 : place(u, c));
         } else if (row_or_node == node) {
           places.push_back(place(c, c));
@@ -467,47 +476,50 @@ class SystemCompiler {
         }
       }
     };
-    for (const auto& [i, j] : s_->block_nodes_) locate(s_->block_place_, i, j, false);
-    for (const auto& [row, node] : s_->jacobian_ends_) locate(s_->jacobian_place_, row, node, true);
-    for (const ComplianceEntry& e : s_->compliance_) {
-      const Index row = s_->row_unknown_[at(e.row)], col = s_->row_unknown_[at(e.col)];
-      s_->compliance_place_.push_back(row < 0 ? -1 : place(row, col));
+    for (const auto& [i, j] : s_->gathers_.block_ends) locate(s_->matrix_.block, i, j, false);
+    for (const auto& [row, node] : s_->gathers_.jacobian_ends) locate(s_->matrix_.jacobian, row, node, true);
+    for (const ComplianceEntry& e : s_->row_data_.compliance) {
+      const Index row = s_->treated_.unknown[at(e.row)], col = s_->treated_.unknown[at(e.col)];
+      s_->matrix_.compliance.push_back(row < 0 ? -1 : place(row, col));
     }
-    for_filled_blocks([&](Index i, Index j) {
-      for (Index c = first[at(j)]; c < first[at(j) + 1]; ++c) {
-        const Index from = i == j ? c : first[at(i)];
-        s_->filled_place_.push_back(from < first[at(i) + 1] ? place(from, c) : -1);
-      }
-    });
-    for (Index i = 0; i < s_->kkt_.size; ++i) s_->diagonal_place_.push_back(s_->kkt_.column_start[at(i)]);
+    for (FilledRows* rows : {&s_->treated_.condensed, &s_->treated_.augmented}) {
+      for_filled_blocks(*rows, [&](Index i, Index j) {
+        for (Index c = first[at(j)]; c < first[at(j) + 1]; ++c) {
+          const Index from = i == j ? c : first[at(i)];
+          rows->place.push_back(from < first[at(i) + 1] ? place(from, c) : -1);
+        }
+      });
+    }
+    for (Index i = 0; i < s_->matrix_.pattern.size; ++i)
+      s_->matrix_.diagonal.push_back(s_->matrix_.pattern.column_start[at(i)]);
   }
 
   // The unknowns of a node share a group; a local row joins the node that most of its stencils have in
   // common, so that the ordering sees one vertex a node. Rows over large parts of a body stay apart.
   void group_unknowns() {
-    SymmetricPattern& kkt = s_->kkt_;
+    SymmetricPattern& kkt = s_->matrix_.pattern;
     kkt.group.assign(at(kkt.size), -1);
     Index groups = 0;
     std::vector<Index> group_of_node(at(s_->nodes()), -1);
     for (Index i = 0; i < s_->nodes(); ++i) {
-      for (Index c = s_->first_unknown_[at(i)]; c < s_->first_unknown_[at(i) + 1]; ++c) {
+      for (Index c = s_->unknowns_.first[at(i)]; c < s_->unknowns_.first[at(i) + 1]; ++c) {
         if (group_of_node[at(i)] < 0) group_of_node[at(i)] = groups++;
         kkt.group[at(c)] = group_of_node[at(i)];
       }
     }
     std::vector<Index> rows_in(at(groups), 0);
     std::size_t e = 0;
-    for (Index r = 0; r < s_->rows_; ++r) {
+    for (Index r = 0; r < s_->row_data_.compliant; ++r) {
       const std::size_t begin = e;
-      while (e < s_->jacobian_ends_.size() && s_->jacobian_ends_[e][0] == r) ++e;
-      if (s_->row_unknown_[at(r)] < 0) continue;
+      while (e < s_->gathers_.jacobian_ends.size() && s_->gathers_.jacobian_ends[e][0] == r) ++e;
+      if (s_->treated_.unknown[at(r)] < 0) continue;
       Index best = -1;
       std::int64_t best_count = 0;
       if (e - begin <= local_row_nodes) {
         for (std::size_t k = begin; k < e; ++k) {
-          const Index g = group_of_node[at(s_->jacobian_ends_[k][1])];
+          const Index g = group_of_node[at(s_->gathers_.jacobian_ends[k][1])];
           if (g < 0) continue;
-          const std::int64_t count = s_->jacobian_gather_.offset[k + 1] - s_->jacobian_gather_.offset[k];
+          const std::int64_t count = s_->gathers_.jacobian.offset[k + 1] - s_->gathers_.jacobian.offset[k];
           if (best < 0 || count > best_count || (count == best_count && rows_in[at(g)] < rows_in[at(best)])) {
             best = g;
             best_count = count;
@@ -519,7 +531,7 @@ class SystemCompiler {
         rows_in.push_back(0);
       }
       ++rows_in[at(best)];
-      kkt.group[at(s_->row_unknown_[at(r)])] = best;
+      kkt.group[at(s_->treated_.unknown[at(r)])] = best;
     }
     kkt.groups = groups;
   }
@@ -528,18 +540,18 @@ class SystemCompiler {
     if (!s_->renews_stencils()) return;
     if (!s_->parts_.ordering_base) {
       s_->parts_.ordering_base = std::make_shared<OrderingBase>();
-      s_->parts_.ordering_base->pattern = s_->kkt_;
+      s_->parts_.ordering_base->pattern = s_->matrix_.pattern;
     }
-    s_->kkt_.base = s_->parts_.ordering_base;
+    s_->matrix_.pattern.base = s_->parts_.ordering_base;
   }
 
   void hash_layout() {
     Hash h;
-    h.add(std::span<const Index>(s_->kkt_.row));
-    h.add(std::span<const std::int64_t>(s_->kkt_.column_start));
+    h.add(std::span<const Index>(s_->matrix_.pattern.row));
+    h.add(std::span<const std::int64_t>(s_->matrix_.pattern.column_start));
     h.add(static_cast<std::uint64_t>(s_->nodes()));
-    h.add(static_cast<std::uint64_t>(s_->rows_));
-    h.add(static_cast<std::uint64_t>(s_->prescribed_rows_));
+    h.add(static_cast<std::uint64_t>(s_->row_data_.compliant));
+    h.add(static_cast<std::uint64_t>(s_->row_data_.prescribed));
     s_->layout_ = h.value();
   }
 

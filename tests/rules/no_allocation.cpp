@@ -3,6 +3,7 @@
 #include "rules/instruments.h"
 #include "support/allocations.h"
 #include "support/contact_scenes.h"
+#include "support/random_saddle.h"
 
 using namespace isochor;
 using namespace test;
@@ -59,6 +60,40 @@ TEST_CASE("a warm solve with friction allocates nothing, its corrections include
     CHECK(r.corrections > 0);
     CHECK(count == 0);
   }
+}
+
+TEST_CASE("warm linear systems allocate nothing, whatever the treatment of their rows") {
+  if (!allocations_are_counted()) return;
+  const RandomRows kept, condensed{RowTreatment::condensed}, dual{RowTreatment::augmented},
+      bordered{RowTreatment::bordered, 4, Compliance::coupled, true};
+  const auto made = random_system(1, {kept, condensed, dual, bordered});
+  REQUIRE(made);
+  const System& s = *made.value();
+  const TbbParallel parallel(1);
+  Assembly assembly(made.value(), parallel);
+  Kkt kkt(made.value(), parallel, std::make_unique<DenseSolver>());
+  const std::vector<double> stiffness(at(s.nodes()), 1.0), rows(at(s.rows()), 1.0);
+  const std::vector<Vec3> nodes(at(s.nodes()), Vec3{1, 2, 3});
+  const std::vector<std::uint8_t> held(at(s.rows()), 0);
+  std::vector<Vec3> dx(nodes.size());
+  std::vector<double> dlambda(rows.size());
+  assembly.evaluate(Want::hessian, Definiteness::exact, s.parts().rest, rows, {});
+  Kkt::Values values;
+  values.mass_scale = 2;
+  values.stiffness = stiffness;
+  values.clamped = held;
+  StageSeconds seconds;
+  const auto run = [&] {
+    return kkt.factor(assembly, values, seconds).status == FactorStatus::ok &&
+           kkt.solve(nodes, rows, dx, dlambda, seconds);
+  };
+  REQUIRE(run());
+  const AllocationCount allocations;
+  const bool ok = run();
+  const long count = allocations.count();
+  CHECK(ok);
+  CHECK(kkt.dual_iterations() > 0);
+  CHECK(count == 0);
 }
 
 TEST_CASE("a step of the world allocates no more than its linear solver") {

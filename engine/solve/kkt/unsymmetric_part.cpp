@@ -51,7 +51,7 @@ UnsymmetricPart::UnsymmetricPart(std::shared_ptr<const System> system, const Par
 }
 
 void UnsymmetricPart::place_blocks() {
-  const auto ends = system_->block_nodes();
+  const auto& ends = system_->gathers().block_ends;
   std::vector<std::pair<std::array<Index, 2>, std::size_t>> destination;
   destination.reserve(ends.size());
   for (std::size_t d = 0; d < ends.size(); ++d) destination.emplace_back(ends[d], d);
@@ -86,14 +86,14 @@ void UnsymmetricPart::place_blocks() {
 
 void UnsymmetricPart::place_columns() {
   // A slot of ours is where the pool has its Jacobian slot.
-  const Gather& gather = system_->jacobian_gather();
-  for (std::size_t d = 0; d < system_->jacobian_ends().size(); ++d) {
+  const Gather& gather = system_->gathers().jacobian;
+  for (std::size_t d = 0; d < system_->gathers().jacobian_ends.size(); ++d) {
     for (auto k = static_cast<std::size_t>(gather.offset[d]);
          k < static_cast<std::size_t>(gather.offset[d + 1]); ++k) {
       const std::int64_t source = gather.source[k];
       for (const PoolSlots& slots : pools_) {
         const StencilPool& pool = *system_->parts().stencil_pools[at(slots.pool)];
-        const std::int64_t first = system_->places()[at(slots.pool)].jacobian;
+        const std::int64_t first = system_->pools().slots[at(slots.pool)].jacobian;
         const auto count = static_cast<std::int64_t>(pool.nodes().item.size()) * pool.functions();
         if (source < first || source >= first + count) continue;
         column_source_.push_back(
@@ -105,7 +105,8 @@ void UnsymmetricPart::place_columns() {
     if (k == 0 || column_source_[k].end != column_source_[k - 1].end) column_run_.push_back(k);
   }
   column_run_.push_back(column_source_.size());
-  for (const ColumnSource& source : column_source_) rows_.push_back(system_->jacobian_ends()[source.end][0]);
+  for (const ColumnSource& source : column_source_)
+    rows_.push_back(system_->gathers().jacobian_ends[source.end][0]);
   std::sort(rows_.begin(), rows_.end());
   rows_.erase(std::unique(rows_.begin(), rows_.end()), rows_.end());
 }
@@ -153,7 +154,7 @@ void UnsymmetricPart::add_to(std::span<const double> scale, std::span<const std:
   const auto first = s.first_unknown();
   for (std::size_t run = 0; run + 1 < block_run_.size(); ++run) {
     const std::size_t d = block_source_[block_run_[run]].block;
-    const auto [i, j] = s.block_nodes()[d];
+    const auto [i, j] = s.gathers().block_ends[d];
     const Index ki = first[at(i) + 1] - first[at(i)], kj = first[at(j) + 1] - first[at(j)];
     if (ki == 0 || kj == 0) continue;
     Mat3 below, above;  // the block (i, j), and (j, i)
@@ -164,7 +165,7 @@ void UnsymmetricPart::add_to(std::span<const double> scale, std::span<const std:
     below = in_free_basis(s, i, j, below);
     above = in_free_basis(s, j, i, above);
     for (Index c = 0; c < kj; ++c) {
-      auto to = static_cast<std::size_t>(s.block_place()[3 * d + at(c)]);
+      auto to = static_cast<std::size_t>(s.matrix().block[3 * d + at(c)]);
       for (Index r = i == j ? c : 0; r < ki; ++r, ++to) {
         const double weight = scale[at(first[at(i)] + r)] * scale[at(first[at(j)] + c)];
         lower[to] += weight * below(r, c);
@@ -175,14 +176,14 @@ void UnsymmetricPart::add_to(std::span<const double> scale, std::span<const std:
   }
   for (std::size_t run = 0; run + 1 < column_run_.size(); ++run) {
     const std::size_t d = column_source_[column_run_[run]].end;
-    const auto [row, node] = s.jacobian_ends()[d];
+    const auto [row, node] = s.gathers().jacobian_ends[d];
     const Index u = s.row_unknown()[at(row)];
     if (u < 0 || (!held.empty() && held[at(row)])) continue;
     Vec3 sum = column_of(column_run_[run], column_run_[run + 1]);
     const Index b = s.basis_of()[at(node)];
     if (b >= 0) sum = transposed_times(s.free_bases()[at(b)].directions, sum);
     for (Index c = 0; c < first[at(node) + 1] - first[at(node)]; ++c) {
-      const auto place = static_cast<std::size_t>(s.jacobian_place()[3 * d + at(c)]);
+      const auto place = static_cast<std::size_t>(s.matrix().jacobian[3 * d + at(c)]);
       upper[place] += scale[at(u)] * scale[at(first[at(node)] + c)] * sum[c];
     }
   }
@@ -192,12 +193,12 @@ void UnsymmetricPart::add_times(std::span<const Vec3> dx, std::span<const double
                                 std::span<Vec3> y) const {
   const System& s = *system_;
   for (const BlockSource& source : block_source_) {
-    const auto [i, j] = s.block_nodes()[source.block];
+    const auto [i, j] = s.gathers().block_ends[source.block];
     y[at(i)] += block_[source.lower] * dx[at(j)];
     if (i != j) y[at(j)] += block_[source.upper] * dx[at(i)];
   }
   for (const ColumnSource& source : column_source_) {
-    const auto [row, node] = s.jacobian_ends()[source.end];
+    const auto [row, node] = s.gathers().jacobian_ends[source.end];
     y[at(node)] += (source.weight * dlambda[at(row)]) * column_[source.slot];
   }
 }

@@ -34,11 +34,11 @@ class UnsymmetricPart {
     std::size_t first_block = 0, first_column = 0;
     std::vector<std::int64_t> block_offset;
   };
-  // Contributions to a block of System::block_nodes(), and to its mirror image.
+  // Contributions to a block of Gathers::block_ends, and to its mirror image.
   struct BlockSource {
     std::size_t block = 0, lower = 0, upper = 0;
   };
-  // Contributions to an entry of System::jacobian_ends().
+  // Contributions to an entry of Gathers::jacobian_ends.
   struct ColumnSource {
     std::size_t end = 0, slot = 0;
     double weight = 1;
