@@ -12,7 +12,7 @@
 namespace isochor {
 
 struct DualAscentOptions {
-  bool augmented = true;  // W as kkt_dual.cpp chooses it, else 0
+  bool augmented = true;  // W as DualRows chooses it, else 0
   // Climb along theta in units of the row metric. False: along theta as it is, which supposes rows of one
   // kind on an even mesh.
   bool scaled = true;
