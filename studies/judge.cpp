@@ -175,6 +175,86 @@ std::optional<Finding> StateJudge::finite(const World& world) const {
   return {};
 }
 
+namespace {
+
+// Notes the first number that is none, or, of a size, is negative.
+class NumberCheck {
+ public:
+  void look(const std::string& what, double value) {
+    if (!std::isfinite(value)) note("not finite", what, value);
+  }
+  void look(const std::string& what, const Vec3& v) {
+    for (int k = 0; k < 3; ++k) look(what, v[k]);
+  }
+  void look(const std::string& what, std::span<const double> values) {
+    for (const double v : values) look(what, v);
+  }
+  void size(const std::string& what, double value) {
+    look(what, value);
+    if (value < 0) note("negative", what, value);
+  }
+  void sizes(const std::string& what, std::span<const double> values) {
+    for (const double v : values) size(what, v);
+  }
+  std::optional<Finding> found;
+
+ private:
+  void note(const char* kind, const std::string& what, double value) {
+    if (!found) found = Finding{kind, what + " is " + number(value)};
+  }
+};
+
+void look_at_body(const World& world, BodyId body, NumberCheck& check) {
+  const std::string of = "body \"" + world.body_name(body) + "\": ";
+  const BodyMeasures m = world.measures(body);
+  check.size(of + "rest volume", m.rest_volume);
+  check.size(of + "mass", m.mass);
+  check.size(of + "residual of the volume rows", m.volume_row_residual);
+  check.look(of + "volume", m.volume);
+  check.look(of + "J", m.min_J);
+  check.look(of + "J", m.max_J);
+  check.look(of + "center of mass", m.center_of_mass);
+  check.look(of + "momentum", m.linear_momentum);
+  check.look(of + "momentum", m.angular_momentum);
+  for (const VolumeMeasures& r : m.regions) {
+    check.look(of + "volume of a region", r.volume);
+    check.look(of + "J of a region", r.min_J);
+    check.look(of + "J of a region", r.max_J);
+  }
+  const BodyFields f = world.fields(body);
+  check.look(of + "pressure of nodes", f.node_pressure);
+  check.look(of + "stress of nodes", f.node_stress);
+  check.look(of + "J of cells", f.cell_J);
+  check.look(of + "pressure of cells", f.cell_pressure);
+  check.sizes(of + "von Mises stress of cells", f.cell_von_mises);
+  check.look(of + "stress of cells", f.cell_stress);
+  check.sizes(of + "stretch of cells", f.cell_max_stretch);
+  check.look(of + "contact pressure", f.node_contact_pressure);
+  check.look(of + "friction", f.node_friction);
+}
+
+}  // namespace
+
+std::optional<Finding> StateJudge::numbers(const World& world) const {
+  NumberCheck check;
+  for (const Body& body : bodies_) look_at_body(world, body.promise.body, check);
+  const Energies e = world.energies();
+  check.size("kinetic energy", e.kinetic);
+  for (const double v : {e.elastic, e.gravity, e.loads, e.pressures}) check.look("energy", v);
+  for (const Vec3& v : world.momentum()) check.look("momentum", v);
+  constexpr const char* kSizes[] = {"length", "area", "touching", "friction_force", "static_friction"};
+  for (const Gauge& g : world.gauges()) {
+    // Infinite: nothing is within the reach of its search.
+    if (g.quantity == "smallest_gap" && g.value == std::numeric_limits<double>::infinity()) continue;
+    const std::string what = "\"" + g.effect + "\" " + g.quantity;
+    if (std::find(std::begin(kSizes), std::end(kSizes), g.quantity) != std::end(kSizes))
+      check.size(what, g.value);
+    else
+      check.look(what, g.value);
+  }
+  return std::move(check.found);
+}
+
 const std::string* StateJudge::tells_inversion(std::span<const std::string> said) {
   for (const std::string& text : said) {
     const bool inverted = text.find("inverted") != std::string::npos ||

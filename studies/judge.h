@@ -48,7 +48,10 @@ class StateJudge {
   StateJudge(const World& world, std::vector<BodyPromise> promises);
 
   JudgedShape shape(const World& world, std::size_t body) const;
-  // Of any state, however it came about: numbers are finite.
+  // Of any state, however it came about: every number that a host can read is finite, and what is a size is
+  // not negative.
+  std::optional<Finding> numbers(const World& world) const;
+  // The same of positions and velocities alone.
   std::optional<Finding> finite(const World& world) const;
   // Of a state that a step converged to. `said` are the warnings so far: where cells are inverted and the law
   // lives through that, one of them must say so.

@@ -176,7 +176,7 @@ TortureResult TortureBench::judge(TortureResult out, const StepReport& last, boo
   // The rows of an accepted state hold, however it ended.
   if (out.reached > 0 && m.volume_error > 1e-8) {
     out.verdict = TortureVerdict::broken;
-    out.reason = "volume error " + std::to_string(m.volume_error);
+    out.reason = "volume rows are off by " + std::to_string(m.volume_error);
     return out;
   }
   if (last.status == StepStatus::converged) {

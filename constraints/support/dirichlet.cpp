@@ -69,6 +69,7 @@ class HeldRows final : public RowPool, public TurningRows {
   RowFacets facets() const override { return {.turning = this}; }
   double turn(double t0, double t1) const override { return motion_->turn(t0, t1); }
   std::vector<Vec3> direction, point;  // of each row; rest positions [m]
+  std::vector<EmbeddedPoint> where;    // of each row
 
  private:
   std::string name_;
@@ -79,14 +80,21 @@ class DirichletInstance final : public EffectInstance {
  public:
   explicit DirichletInstance(std::shared_ptr<Amount> amount) : amount_(std::move(amount)) {}
   Amount* amount() override { return amount_.get(); }
-  // Supports by rows report their force themselves; what is eliminated has reactions.
-  void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
-    if (!rows) return;
-    Vec3 force{};
+  std::array<Vec3, 2> reaction(const GaugeContext& c) const override {
+    std::array<Vec3, 2> sum{};
+    if (!rows) return sum;
     const std::size_t first = at(c.system.first_row(row_pool));
     for (std::size_t r = 0; r < rows->direction.size(); ++r) {
-      force -= c.state.lambda[first + r] * rows->direction[r];
+      const Vec3 force = -c.state.lambda[first + r] * rows->direction[r];
+      sum[0] += force;
+      sum[1] += cross(rows->where[r].at(c.state.x), force);
     }
+    return sum;
+  }
+  // Supports by rows report their force as a gauge, too.
+  void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
+    if (!rows) return;
+    const Vec3 force = reaction(c)[0];
     for (int k = 0; k < 3; ++k) {
       out.push_back(
           {std::string(rows->name()), "dirichlet", std::string("force_") + "xyz"[k], "N", force[k]});
@@ -223,6 +231,7 @@ class DirichletEffect final : public EffectSource {
         add_point_row(*rows, static_cast<Index>(p), k, compliance, 1 / (stiffest(body) * length), length);
         rows->direction.push_back(frame[static_cast<std::size_t>(k)]);
         rows->point.push_back(points[p].at(builder.rest()));
+        rows->where.push_back(points[p]);
       }
     }
     // Springs are condensed by default: their stiffness goes into the matrix, no unknowns are added.

@@ -68,6 +68,12 @@ class EffectInstance {
     (void)context;
     (void)out;
   }
+  // Force and moment about the origin by which it holds bodies with rows of its own; what prescribes
+  // coordinates has residuals for that.
+  virtual std::array<Vec3, 2> reaction(const GaugeContext& context) const {
+    (void)context;
+    return {};
+  }
   // Pressure multipliers that live at nodes, by scene node [Pa]; others are left as they are.
   virtual void node_multipliers(const GaugeContext& context, std::span<double> pressure) const {
     (void)context;

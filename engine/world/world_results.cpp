@@ -110,6 +110,8 @@ std::array<Vec3, 2> World::reaction(EffectId effect) const {
   const auto i = static_cast<std::size_t>(effect);
   if (auto r = check(effect); !r && w.options.log) w.options.log("reaction: " + r.error());
   if (!check(effect) || !w.compile()) return sum;
+  if (i < w.instances.size()) sum = w.instances[i]->reaction({w.system(), w.state});
+  if (i >= w.held_by.size()) return sum;
   for (const HeldDirection& h : w.held_by[i]) {
     const Vec3 f = dot(h.direction, w.state.reactions[at(h.node)]) * h.direction;
     sum[0] += f;

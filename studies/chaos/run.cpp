@@ -166,7 +166,7 @@ bool ChaosRun::take(const StepReport& report, const Before& before) {
   if (report.status == StepStatus::unfinished) {
     unfinished_ = true;
     ++out_.steps;
-    return broken(judge_.finite(built_));
+    return broken(judge_.finite(built_)) || broken(judge_.numbers(built_));
   }
   const bool given_back = report.status == StepStatus::rejected && stayed && budgeted(out_.steps);
   if (report.status != StepStatus::converged && stayed) {

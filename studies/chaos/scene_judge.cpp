@@ -204,19 +204,6 @@ bool is_carried_by_supports(const SceneDef& s, const BuiltScene& built) {
   });
 }
 
-// Supports by rows report their force as gauges.
-Vec3 force_of(const World& world, const DirichletDef& support, EffectId id) {
-  if (support.treatment == SupportTreatment::eliminated) return world.reaction(id)[0];
-  Vec3 force{};
-  for (const Gauge& g : world.gauges()) {
-    if (g.effect != support.name) continue;
-    for (int k = 0; k < 3; ++k) {
-      if (g.quantity == std::string("force_") + "xyz"[k]) force[k] = g.value;
-    }
-  }
-  return force;
-}
-
 SceneDef with_poses(SceneDef scene, const BuiltScene& built) {
   for (DirichletDef& d : scene.dirichlet) {
     if (d.bone.file.empty()) continue;
@@ -427,8 +414,7 @@ std::optional<Finding> SceneJudge::balance(const BuiltScene& built) const {
     sum += force;
     scale += length(force);
   };
-  for (std::size_t d = 0; d < scene_.dirichlet.size(); ++d)
-    add(force_of(world, scene_.dirichlet[d], built.ids(dirichlet_kind)[d]));
+  for (const EffectId id : built.ids(dirichlet_kind)) add(world.reaction(id)[0]);
   for (std::size_t b = 0; b < mass_.size(); ++b)
     add(evaluate(scene_.analysis.options.gravity_curve, t) * mass_[b] * scene_.analysis.options.gravity);
   for (const PointForceDef& f : scene_.forces) add(evaluate(f.amount, t) * f.force);
@@ -445,8 +431,20 @@ std::optional<Finding> SceneJudge::balance(const BuiltScene& built) const {
                                 number(scale) + " N in all"};
 }
 
+std::optional<Finding> SceneJudge::numbers(const BuiltScene& built) const {
+  if (auto wrong = state_.numbers(built.world)) return wrong;
+  for (std::size_t d = 0; d < scene_.dirichlet.size(); ++d) {
+    for (const Vec3& v : built.world.reaction(built.ids(dirichlet_kind)[d])) {
+      if (!std::isfinite(length(v)))
+        return Finding{"not finite", "the reaction of \"" + scene_.dirichlet[d].name + "\""};
+    }
+  }
+  return {};
+}
+
 std::optional<Finding> SceneJudge::accepted(const BuiltScene& built, std::span<const std::string> said) {
   if (auto wrong = state_.accepted(built.world, said, limits_)) return wrong;
+  if (auto wrong = numbers(built)) return wrong;
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
     if (auto wrong = volume(built.world, b)) return wrong;
   }

@@ -16,6 +16,8 @@ class SceneJudge {
   // Of a state that a step converged to.
   std::optional<Finding> accepted(const BuiltScene& built, std::span<const std::string> said);
   std::optional<Finding> finite(const BuiltScene& built) const { return state_.finite(built.world); }
+  // As StateJudge::numbers(), with the reactions of supports.
+  std::optional<Finding> numbers(const BuiltScene& built) const;
   // The smallest J of all bodies, how many cells are inverted, and how many may be so for all that rounding
   // tells.
   struct Inversion {

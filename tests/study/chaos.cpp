@@ -338,6 +338,21 @@ TEST_CASE("the judge adds up what supports and loads exert") {
   }
 }
 
+TEST_CASE("the judge reads every number of a world") {
+  const SceneDef scene = block(Element::hex8, MaterialLaw::stable_neo_hookean, 0.3);
+  BuiltScene built = built_of(scene);
+  const SceneJudge judge(scene, built);
+  CHECK(!judge.numbers(built));
+  // Cells without a volume have no Cauchy stress; the positions are finite all the same.
+  std::vector<Vec3> x;
+  for (const Vec3& X : built.world.rest_positions(built.bodies[0])) x.push_back({X.x, X.y, 0});
+  REQUIRE(built.world.set_positions(built.bodies[0], x).ok());
+  CHECK(!judge.finite(built));
+  const auto found = judge.numbers(built);
+  REQUIRE(found.has_value());
+  CHECK(found->kind == "not finite");
+}
+
 TEST_CASE("the judge finds energy from nowhere, and lets work pass") {
   SceneDef s = block(Element::tet4, MaterialLaw::stable_neo_hookean, 0.3);
   s.analysis.type = AnalysisType::dynamics;

@@ -110,23 +110,32 @@ TEST_CASE("multipliers hold like eliminated coordinates, springs approach them")
   hold(exact.world, exact.body, {"x0"});
   const EffectId end = value(exact.world.add(dirichlet(on_end(exact.body, SupportTreatment::eliminated))));
   must_advance(exact.world);
-  const Vec3 force = exact.world.reaction(end)[0];
+  const auto [force, moment] = exact.world.reaction(end);
   CHECK(std::abs(force.x) > 1);
 
   Block rows;
   hold(rows.world, rows.body, {"x0"});
-  value(rows.world.add(dirichlet(on_end(rows.body, SupportTreatment::multiplier))));
+  const EffectId by_multipliers =
+      value(rows.world.add(dirichlet(on_end(rows.body, SupportTreatment::multiplier))));
   must_advance(rows.world);
   CHECK(largest_difference(exact.world, exact.body, rows.world, rows.body) < 1e-9);
   const Vec3 by_rows = force_gauge(rows.world, "end");
   for (int k = 0; k < 3; ++k) CHECK(by_rows[k] == Approx(force[k]).margin(1e-6 * std::abs(force.x)));
+  // Whatever holds, it has a reaction.
+  const auto same = rows.world.reaction(by_multipliers);
+  for (int k = 0; k < 3; ++k) {
+    CHECK(same[0][k] == Approx(force[k]).margin(1e-6 * std::abs(force.x)));
+    CHECK(same[1][k] == Approx(moment[k]).margin(1e-6 * std::abs(force.x)));
+  }
 
   double last = 1;
   for (const double stiffness : {1e5, 1e6, 1e7}) {
     Block soft;
     hold(soft.world, soft.body, {"x0"});
-    value(soft.world.add(dirichlet(on_end(soft.body, SupportTreatment::stiffness, stiffness))));
+    const EffectId springs =
+        value(soft.world.add(dirichlet(on_end(soft.body, SupportTreatment::stiffness, stiffness))));
     must_advance(soft.world);
+    CHECK(soft.world.reaction(springs)[0].x == Approx(force.x).epsilon(0.3));
     const double away = largest_difference(exact.world, exact.body, soft.world, soft.body);
     CHECK(away < 0.2 * last);
     CHECK(away > 1e-9);
