@@ -135,15 +135,17 @@ namespace {
 
 // What was printed counts as done only when it has arrived.
 int checked_output(int code) {
-  if (code == app::out_of_memory) {
-    std::fflush(stdout);
-    std::_Exit(code);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    std::fprintf(
+        stderr,
+        "isochor: standard output could not be written: its reader is gone, or the disk is full; what "
+        "went into files is there\n");
+    if (code == app::success) code = app::not_written;
   }
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  std::fprintf(stderr,
-               "isochor: standard output could not be written: its reader is gone, or the disk is full; what "
-               "went into files is there\n");
-  return code == app::success ? app::not_written : code;
+  // Threads of BLAS that found no memory, which may be what the reason is about, never end, and an exit that
+  // waits for them does not either.
+  if (code != app::success) std::_Exit(code);
+  return code;
 }
 
 }  // namespace

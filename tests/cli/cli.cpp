@@ -43,10 +43,11 @@ class Shell {
   }
   const fs::path& folder() const { return folder_; }
 
-  // Runs in the shell's own folder.
-  Outcome run(const std::string& arguments) const {
+  // Runs in the shell's own folder; `before`: what the shell is told before that.
+  Outcome run(const std::string& arguments, const std::string& before = "") const {
     std::string command = "cd '";
-    command.append(folder_.string()).append("' && '" ISOCHOR_BINARY "' ").append(arguments);
+    command.append(folder_.string()).append("' && ").append(before);
+    command.append("'" ISOCHOR_BINARY "' ").append(arguments);
     command.append(" > out.txt 2> err.txt");
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000, slurp(folder_ / "out.txt"),
@@ -247,3 +248,20 @@ TEST_CASE("an interrupt ends a run in good order") {
     CHECK_FALSE(slurp(out / "steps.csv").empty());
   }
 }
+
+#ifndef __SANITIZE_ADDRESS__  // its shadow alone takes more than any limit
+TEST_CASE("without memory the tool ends, and says why") {
+  Shell shell;
+  shell.write("large.json", R"({"bodies": [{"name": "b", "mesh": {"box": {"divisions": [24, 24, 24]}},
+    "element": "tet10", "materials": [{"young": 1000, "poisson": 0.5}]}], "gravity": [0, 0, -0.1],
+    "dirichlet": [{"name": "h", "where": {"surfaces": ["z0"]}}]})");
+  for (const char* kilobytes : {"150000", "400000", "900000"}) {
+    CAPTURE(kilobytes);
+    const Outcome o = shell.run("run large.json --out out",
+                                "ulimit -v " + std::string(kilobytes) + " && timeout -k 1 100 ");
+    CHECK(o.code != 0);
+    CHECK(o.code < 124);  // nobody had to end it, no signal did
+    CHECK_THAT(o.err, Contains("memory"));
+  }
+}
+#endif
