@@ -8,10 +8,6 @@ namespace isochor {
 
 namespace {
 
-bool finite(const Vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 // Fixed nodal forces times an amount.
 class DeadLoad final : public LoadPool {
  public:

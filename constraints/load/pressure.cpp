@@ -33,16 +33,6 @@ const EdgeRule& edge_rule(std::size_t nodes) {
   return nodes == 2 ? straight : curved;
 }
 
-// block += s [w]x
-void add_cross(Mat3& block, double s, const Vec3& w) {
-  block(0, 1) -= s * w.z;
-  block(0, 2) += s * w.y;
-  block(1, 0) += s * w.z;
-  block(1, 2) -= s * w.x;
-  block(2, 0) -= s * w.y;
-  block(2, 1) += s * w.x;
-}
-
 // What the rim of an open surface adds to the gradient of the volume under it, so that the sum is the
 // integral of N_a n dA: c_a = 1/3 of the integral of N_a (x - origin) x dx along the rim (by Stokes'
 // theorem). It has no potential, so it is held where the iteration began: the function of an edge is c(held)

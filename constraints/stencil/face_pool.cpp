@@ -155,23 +155,6 @@ FacePoint face_point(const FaceRule& r, int q, std::span<const Index> nodes, std
   return p;
 }
 
-// block += s [w]x
-void add_cross(Mat3& block, double s, const Vec3& w) {
-  block(0, 1) -= s * w.z;
-  block(0, 2) += s * w.y;
-  block(1, 0) += s * w.z;
-  block(1, 2) -= s * w.x;
-  block(2, 0) -= s * w.y;
-  block(2, 1) += s * w.x;
-}
-
-// block += s a b^T
-void add_outer(Mat3& block, double s, const Vec3& a, const Vec3& b) {
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) block(i, j) += s * a[i] * b[j];
-  }
-}
-
 }  // namespace
 
 void raise_negative_eigenvalues(std::size_t n, Mat3* block) {

@@ -8,10 +8,6 @@ namespace isochor {
 
 namespace {
 
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
 // amount * displacement, and a rotation by amount * angle about an axis (Rodrigues).
 class RigidMotion final : public Motion {
  public:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -30,6 +31,34 @@ inline Vec3 operator*(const Mat3& a, const Vec3& v) {
 inline Vec3 transposed_times(const Mat3& a, const Vec3& v) {
   return {a(0, 0) * v.x + a(1, 0) * v.y + a(2, 0) * v.z, a(0, 1) * v.x + a(1, 1) * v.y + a(2, 1) * v.z,
           a(0, 2) * v.x + a(1, 2) * v.y + a(2, 2) * v.z};
+}
+
+inline double norm(const Vec3& v) {
+  return std::sqrt(dot(v, v));
+}
+// Its unit vector; zero for zero.
+inline Vec3 direction(const Vec3& v) {
+  const double length = norm(v);
+  return length > 0 ? (1 / length) * v : Vec3{};
+}
+inline bool finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// m += s a b^T
+inline void add_outer(Mat3& m, double s, const Vec3& a, const Vec3& b) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) m(i, j) += s * a[i] * b[j];
+  }
+}
+// m += s [w]x, the matrix of the cross product with w.
+inline void add_cross(Mat3& m, double s, const Vec3& w) {
+  m(0, 1) -= s * w.z;
+  m(0, 2) += s * w.y;
+  m(1, 0) += s * w.z;
+  m(1, 2) -= s * w.x;
+  m(2, 0) -= s * w.y;
+  m(2, 1) += s * w.x;
 }
 
 inline std::size_t at(Index i) {

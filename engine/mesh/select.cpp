@@ -19,11 +19,11 @@ using mesh_files::FaceCorners;
 using mesh_files::join;
 using mesh_files::length;
 
-bool finite(const Vec3& v) {
+bool measurable(const Vec3& v) {
   return std::isfinite(dot(v, v));
 }
 bool finite_direction(const Vec3& v) {
-  return finite(v) && dot(v, v) > 0;
+  return measurable(v) && dot(v, v) > 0;
 }
 
 double diagonal(const std::vector<Vec3>& points) {
@@ -138,23 +138,23 @@ Result<void> Selector::check() {
   if (!mesh_files::check_arrays(mesh_, report)) return Error{who() + report.findings.front().message};
   if (!(s.tolerance >= 0) || !std::isfinite(s.tolerance))
     return Error{who() + "tolerance = " + join(s.tolerance) + " m; it must be zero or positive"};
-  if (s.box && !(finite((*s.box)[0]) && finite((*s.box)[1])))
+  if (s.box && !(measurable((*s.box)[0]) && measurable((*s.box)[1])))
     return Error{who() + "the box has a coordinate that is no finite number"};
   for (int k = 0; s.box && k < 3; ++k) {
     if ((*s.box)[0][k] <= (*s.box)[1][k]) continue;
     return Error{who() + "the box runs from " + join((*s.box)[0][k]) + " to " + join((*s.box)[1][k]) +
                  " m along " + "xyz"[k] + "; give the lower corner first"};
   }
-  if (s.plane && !(finite(s.plane->point) && finite_direction(s.plane->normal)))
+  if (s.plane && !(measurable(s.plane->point) && finite_direction(s.plane->normal)))
     return Error{who() + "the plane needs a finite point and a normal that is not zero"};
-  if (s.sphere && !(finite(s.sphere->center) && s.sphere->radius > 0 && std::isfinite(s.sphere->radius)))
+  if (s.sphere && !(measurable(s.sphere->center) && s.sphere->radius > 0 && std::isfinite(s.sphere->radius)))
     return Error{who() + "the sphere's radius is " + join(s.sphere->radius) +
                  " m; give it a finite center and a positive radius"};
   const auto bad_angle = [](double angle) { return !(angle > 0) || angle > std::numbers::pi; };
   if (s.facing && (!finite_direction(s.facing->direction) || bad_angle(s.facing->angle)))
     return Error{who() + "facing has the angle " + join(s.facing->angle) +
                  " rad; give a direction that is not zero and an angle above 0 and up to pi"};
-  if (s.seed && (!finite(s.seed->point) || bad_angle(s.seed->angle)))
+  if (s.seed && (!measurable(s.seed->point) || bad_angle(s.seed->angle)))
     return Error{who() + "the seed has the angle " + join(s.seed->angle) +
                  " rad; give a finite point and an angle above 0 and up to pi"};
   if (!s.box && !s.plane && !s.sphere && !s.lies_on && !s.facing && !s.seed && s.of.empty())

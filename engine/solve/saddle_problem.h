@@ -87,12 +87,6 @@ struct StoredEnergy {
   bool met = false;    // rows and given positions are where the problem wants them
 };
 
-inline double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-inline bool finite(const Vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 bool all_finite(const SaddleProblem& p);
 
 }  // namespace isochor

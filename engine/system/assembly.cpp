@@ -13,10 +13,6 @@ Index as_index(std::int64_t n) {
   return static_cast<Index>(n);
 }
 
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
 // Weighted sum of scalar slots into each of the destinations [begin, begin + out.size()).
 void gather_scalars(const Gather& g, std::int64_t begin, std::span<const double> slots, std::span<double> out,
                     const Parallel& parallel) {

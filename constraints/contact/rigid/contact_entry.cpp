@@ -8,10 +8,6 @@ namespace isochor {
 
 namespace {
 
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
 bool same_pose(const ContactFrame& a, const ContactFrame& b) {
   return a.c == b.c && a.A.m == b.A.m;
 }

@@ -9,10 +9,6 @@ namespace isochor {
 
 namespace {
 
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
 // Triangles of one plane together, largest first.
 std::vector<FlatSide> sides_of_mesh(const TriangleSurface& surface) {
   constexpr double share = 0.05, same_normal = 1e-6;

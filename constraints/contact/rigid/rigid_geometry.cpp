@@ -8,12 +8,6 @@ namespace isochor {
 
 namespace {
 
-void add_outer(Mat3& m, double s, const Vec3& a, const Vec3& b) {
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) m(i, j) += s * a[i] * b[j];
-  }
-}
-
 // B^T m B.
 Mat3 pulled_back(const Mat3& B, const Mat3& m) {
   Mat3 half, out;

@@ -11,10 +11,6 @@ namespace isochor {
 
 namespace {
 
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
 // Weights of four neighboring coefficients at t in [0, 1] of an interval, with their derivatives.
 struct Weights {
   double w[4], first[4], second[4];

@@ -12,21 +12,6 @@ namespace isochor {
 
 namespace {
 
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
-Vec3 direction(const Vec3& v) {
-  const double length = norm(v);
-  return length > 0 ? (1 / length) * v : Vec3{};
-}
-
-void add_outer(Mat3& m, double s, const Vec3& a) {
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) m(i, j) += s * a[i] * a[j];
-  }
-}
-
 // Whether the way from `start` by fractions 0 to 1 of `way` meets the box.
 bool meets_box(const Vec3& start, const Vec3& way, const Box& box, double margin) {
   double from = 0, to = 1;
@@ -141,9 +126,9 @@ Distance MeshSolid::at_edge(const Nearest& n, Distance d) const {
     return d;
   }
   for (int i = 0; i < 3; ++i) d.curvature(i, i) = 1 / d.value;
-  add_outer(d.curvature, -1 / d.value, d.normal);
-  add_outer(d.curvature, -1 / d.value,
-            direction(corner(n.triangle, n.edge + 1) - corner(n.triangle, n.edge)));
+  add_outer(d.curvature, -1 / d.value, d.normal, d.normal);
+  const Vec3 along = direction(corner(n.triangle, n.edge + 1) - corner(n.triangle, n.edge));
+  add_outer(d.curvature, -1 / d.value, along, along);
   return d;
 }
 
@@ -163,8 +148,8 @@ Distance MeshSolid::at_corner(const Nearest& n, Distance d) const {
     }
   }
   for (int i = 0; i < 3; ++i) d.curvature(i, i) = 1 / d.value;
-  add_outer(d.curvature, -1 / d.value, d.normal);
-  add_outer(d.curvature, -1 / d.value, along);
+  add_outer(d.curvature, -1 / d.value, d.normal, d.normal);
+  add_outer(d.curvature, -1 / d.value, along, along);
   return d;
 }
 

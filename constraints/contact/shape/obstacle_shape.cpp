@@ -10,18 +10,8 @@ namespace isochor {
 
 namespace {
 
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
 Mat3 columns(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {{a.x, b.x, c.x, a.y, b.y, c.y, a.z, b.z, c.z}};
-}
-
-void add_outer(Mat3& m, double s, const Vec3& a, const Vec3& b) {
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) m(i, j) += s * a[i] * b[j];
-  }
 }
 
 // Around a segment along z from -half to half; a sphere is half = 0.

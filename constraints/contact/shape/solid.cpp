@@ -7,10 +7,6 @@ namespace isochor {
 
 namespace {
 
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
 constexpr std::size_t kMostCrossings = 64;
 
 // How far it is from a point of the surface straight through the solid to its other side.

@@ -19,10 +19,6 @@ constexpr double kEnter = 1e-3, kLeave = 0.05;
 // Depth, over the same, that is rounding.
 constexpr double kShallow = 1e-3;
 
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
 // Normals at 105 degrees or more. Those of two sides that are flush are perpendicular, give or take a strain.
 bool face_each_other(const Vec3& n, const Vec3& m) {
   return dot(n, m) < -0.25 * norm(n) * norm(m);

@@ -36,10 +36,6 @@ constexpr std::size_t kDifferences = 7;
 constexpr std::array<std::array<std::size_t, 2>, kDifferences> kDifference{
     {{1, 0}, {5, 4}, {0, 4}, {2, 0}, {3, 0}, {6, 4}, {7, 4}}};  // p, q, r; beside the first, the second edge
 
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
 // Sine by which the triangle with corner v beside edge p falls away from a unit normal across p.
 double falls(const Vec3& n, const Vec3& p, const Vec3& v) {
   const double length = norm(cross(p, v));

@@ -11,21 +11,6 @@ namespace isochor {
 
 namespace {
 
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
-Vec3 direction(const Vec3& v) {
-  const double length = norm(v);
-  return length > 0 ? (1 / length) * v : Vec3{};
-}
-
-void add_outer(Mat3& m, double s, const Vec3& a, const Vec3& b) {
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) m(i, j) += s * a[i] * b[j];
-  }
-}
-
 Vec3 triangle_normal(const std::array<std::uint8_t, 3>& c, std::span<const Vec3> x) {
   return direction(cross(x[c[1]] - x[c[0]], x[c[2]] - x[c[0]]));
 }

@@ -9,10 +9,6 @@ namespace {
 
 constexpr double kSame = 1e-3;  // difference of distances over the size of a face that does not matter
 
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
 }  // namespace
 
 void SurfaceContactPool::accept(const StencilRequest& q, std::span<double> memory) const {

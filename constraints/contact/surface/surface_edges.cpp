@@ -16,10 +16,6 @@ Vec3 area_vector(const std::array<Index, 3>& c, std::span<const Vec3> x) {
   return 0.5 * cross(x[at(c[1])] - x[at(c[0])], x[at(c[2])] - x[at(c[0])]);
 }
 
-double norm(const Vec3& v) {
-  return std::sqrt(dot(v, v));
-}
-
 // Whether the surface bulges at the edge from a corner of a triangle with area vector n to another with m.
 bool bulges(const Vec3& n, const Vec3& m, const Vec3& to_far) {
   return dot(n, m) <= kGreatestCosine * norm(n) * norm(m) && dot(n, to_far) < 0;
