@@ -36,7 +36,8 @@ class InertiaCorrection {
   template <class Works>
   bool factor_until(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> multipliers,
                     SaddleReport& report, Works&& works) {
-    if (climb(p, x, multipliers, report, std::function<bool()>(std::forward<Works>(works)))) return true;
+    // By reference, so that the function allocates nothing.
+    if (climb(p, x, multipliers, report, std::ref(works))) return true;
     if (!gave_up(report) && report.message.empty())
       report.message = "the linear solver found no direction of descent";
     return false;
