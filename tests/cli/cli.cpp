@@ -11,19 +11,14 @@
 #include <thread>
 
 #include "catch.h"
+#include "support/files.h"
 
 using Json = nlohmann::json;
 using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
+using files::slurp;
 
 namespace {
-
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 struct Outcome {
   int code = -1;

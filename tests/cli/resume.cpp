@@ -15,19 +15,14 @@
 #include <vector>
 
 #include "catch.h"
+#include "support/files.h"
 
 using Json = nlohmann::json;
 using Catch::Matchers::Contains;
 namespace fs = std::filesystem;
+using files::slurp;
 
 namespace {
-
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 std::size_t lines(const fs::path& path) {
   const std::string text = slurp(path);

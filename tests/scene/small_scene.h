@@ -10,8 +10,11 @@
 
 #include "scenes/run.h"
 #include "scenes/scene_file.h"
+#include "support/files.h"
 
 namespace isochor::test {
+
+using files::slurp;
 
 inline const char* small_text() {
   return R"({
@@ -30,13 +33,6 @@ inline const char* small_text() {
 inline SceneDef small_scene(const Overrides& overrides = {}) {
   auto scene = parse_scene(small_text(), "small.json", ".", overrides);
   return scene ? scene.value() : SceneDef{};
-}
-
-inline std::string slurp(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
 }
 
 // A folder of its own, gone with the test.

@@ -14,19 +14,14 @@
 #include "studies/formulations.h"
 #include "studies/problems.h"
 #include "studies/store.h"
+#include "support/files.h"
 
 using namespace isochor;
 using namespace isochor::studies;
 namespace fs = std::filesystem;
+using files::slurp;
 
 namespace {
-
-std::string slurp(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 SceneDef block(double poisson) {
   SceneDef s;
