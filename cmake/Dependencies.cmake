@@ -1,4 +1,4 @@
-# Third-party libraries. Each is named with its licence and reason in docs/dependencies.md.
+# Third-party libraries. Each is named with its license and reason in docs/dependencies.md.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(TBB REQUIRED)
 find_package(ZLIB REQUIRED)
@@ -41,4 +41,4 @@ if(ISOCHOR_HAVE_CHOLMOD_SUPERNODAL)
 endif()
 message(STATUS "Isochor: linear solvers: multifrontal ON, Eigen ON, MUMPS ${ISOCHOR_HAVE_MUMPS}, CHOLMOD "
                "${ISOCHOR_HAVE_CHOLMOD}, CHOLMOD supernodal ${ISOCHOR_HAVE_CHOLMOD_SUPERNODAL}; METIS ordering ${ISOCHOR_HAVE_METIS}")
-message(STATUS "Isochor: licences of what this build links: ${_licences}")
+message(STATUS "Isochor: licenses of what this build links: ${_licences}")

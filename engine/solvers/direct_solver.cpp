@@ -61,7 +61,7 @@ FactorReport DirectSolver::factor(std::span<const double> values) {
     if (pattern_ == nullptr || values.size() != triangles * static_cast<std::size_t>(pattern_->nonzeros())) {
       report.status = FactorStatus::failed;
       report.message = pattern_ == nullptr ? "factor was called without a successful analyze"
-                                           : "the number of values is not that of the analysed pattern";
+                                           : "the number of values is not that of the analyzed pattern";
       return report;
     }
     values_ = values;

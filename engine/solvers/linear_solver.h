@@ -29,7 +29,7 @@ struct SymmetricPattern {
   Index groups = 0;
   // Optional (empty or size entries): 1 for a multiplier row, whose diagonal may be zero and whose pivot is
   // expected to be negative. The ordering keeps such a row behind an unknown that it constrains, and the
-  // backends without pivoting know from it which way to regularise. Without it, the rows with a diagonal <= 0
+  // backends without pivoting know from it which way to regularize. Without it, the rows with a diagonal <= 0
   // are taken for that.
   std::vector<std::uint8_t> multiplier;
   // Optional: a pattern of the same unknowns that differs in a few places, whose pivot sequence may serve.
@@ -86,7 +86,7 @@ class LinearSolver {
   virtual void begin_solve() {}
   // Ordering and symbolic work, once a topology. The pattern must outlive the solver's use of it.
   virtual FactorReport analyze(const SymmetricPattern& pattern) = 0;
-  // Numeric factorisation of the values that belong to the analysed pattern. A solver from
+  // Numeric factorization of the values that belong to the analyzed pattern. A solver from
   // make_unsymmetric_solver() takes two triangles one after the other: the lower one with the diagonal, then
   // the transposed upper one in the same places, with zeros on the diagonal.
   virtual FactorReport factor(std::span<const double> values) = 0;

@@ -22,13 +22,13 @@ namespace {
 
 // Adjacency of the groups without self loops, both directions, rows sorted.
 struct Graph {
-  std::vector<Index> start, neighbour, weight;
+  std::vector<Index> start, neighbor, weight;
   Index size() const { return static_cast<Index>(start.size()) - 1; }
 };
 
 using Pair = std::pair<Index, Index>;
 
-// A row is dense when it touches a large part of the groups, beyond what any mesh neighbourhood does.
+// A row is dense when it touches a large part of the groups, beyond what any mesh neighborhood does.
 Index dense_limit(Index groups) {
   return std::max<Index>(100, static_cast<Index>(10 * std::sqrt(groups)));
 }
@@ -92,13 +92,13 @@ Members members_of(std::span<const Index> group, Index groups, std::span<const s
 Graph transposed(const Graph& from) {
   Graph to;
   to.start.assign(from.start.size(), 0);
-  for (const Index b : from.neighbour) ++to.start[at(b) + 1];
+  for (const Index b : from.neighbor) ++to.start[at(b) + 1];
   std::partial_sum(to.start.begin(), to.start.end(), to.start.begin());
-  to.neighbour.resize(from.neighbour.size());
+  to.neighbor.resize(from.neighbor.size());
   std::vector<Index> next(to.start.begin(), to.start.end() - 1);
   for (Index a = 0; a < from.size(); ++a) {
     for (Index k = from.start[at(a)]; k < from.start[at(a) + 1]; ++k)
-      to.neighbour[at(next[at(from.neighbour[at(k)])]++)] = a;
+      to.neighbor[at(next[at(from.neighbor[at(k)])]++)] = a;
   }
   return to;
 }
@@ -118,26 +118,26 @@ Graph quotient_graph(const SymmetricPattern& p, std::span<const Index> group, co
         const Index r = p.row[static_cast<std::size_t>(k)], h = group[at(r)];
         if (mark[at(h)] == g || dense[at(r)]) continue;
         mark[at(h)] = g;
-        below.neighbour.push_back(h);
+        below.neighbor.push_back(h);
       }
     }
-    below.start.push_back(static_cast<Index>(below.neighbour.size()));
+    below.start.push_back(static_cast<Index>(below.neighbor.size()));
   }
   const Graph above = transposed(below);
   Graph both;
   both.start = {0};
-  both.neighbour.reserve(2 * below.neighbour.size());
+  both.neighbor.reserve(2 * below.neighbor.size());
   std::fill(mark.begin(), mark.end(), -1);
   for (Index g = 0; g < groups; ++g) {
     for (const Graph* half : std::array<const Graph*, 2>{&below, &above}) {
       for (Index k = half->start[at(g)]; k < half->start[at(g) + 1]; ++k) {
-        const Index h = half->neighbour[at(k)];
+        const Index h = half->neighbor[at(k)];
         if (mark[at(h)] == g) continue;
         mark[at(h)] = g;
-        both.neighbour.push_back(h);
+        both.neighbor.push_back(h);
       }
     }
-    both.start.push_back(static_cast<Index>(both.neighbour.size()));
+    both.start.push_back(static_cast<Index>(both.neighbor.size()));
   }
   Graph graph = transposed(both);
   graph.weight.resize(at(groups));
@@ -165,13 +165,13 @@ bool metis_position(const Graph& graph, std::vector<Index>& position) {
   position.resize(at(graph.size()));
   idx_t n = graph.size();
   auto* const start = const_cast<idx_t*>(graph.start.data());
-  auto* const neighbour = const_cast<idx_t*>(graph.neighbour.data());
+  auto* const neighbor = const_cast<idx_t*>(graph.neighbor.data());
   auto* const weight = const_cast<idx_t*>(graph.weight.data());
 #ifdef __GLIBC__
   char state[128];
   char* const host_state = initstate(1, state, sizeof state);
 #endif
-  const int status = METIS_NodeND(&n, start, neighbour, weight, options, order.data(), position.data());
+  const int status = METIS_NodeND(&n, start, neighbor, weight, options, order.data(), position.data());
 #ifdef __GLIBC__
   if (host_state != nullptr) setstate(host_state);
 #endif
@@ -182,10 +182,10 @@ bool metis_position(const Graph& graph, std::vector<Index>& position) {
 void amd_position(const Graph& graph, std::vector<Index>& position) {
   const Index n = graph.size();
   Eigen::SparseMatrix<double, Eigen::ColMajor, Index> matrix(n, n);
-  matrix.resizeNonZeros(static_cast<Eigen::Index>(graph.neighbour.size()));
+  matrix.resizeNonZeros(static_cast<Eigen::Index>(graph.neighbor.size()));
   std::copy(graph.start.begin(), graph.start.end(), matrix.outerIndexPtr());
-  std::copy(graph.neighbour.begin(), graph.neighbour.end(), matrix.innerIndexPtr());
-  std::fill_n(matrix.valuePtr(), graph.neighbour.size(), 1.0);
+  std::copy(graph.neighbor.begin(), graph.neighbor.end(), matrix.innerIndexPtr());
+  std::fill_n(matrix.valuePtr(), graph.neighbor.size(), 1.0);
   Eigen::AMDOrdering<Index>::PermutationType order;
   Eigen::AMDOrdering<Index>()(matrix, order);
   position.resize(at(n));
@@ -208,8 +208,8 @@ std::vector<Index> order_groups(const SymmetricPattern& p, std::span<const Index
       if (primal[at(g)]) continue;
       Index first = n;
       for (Index k = graph.start[at(g)]; k < graph.start[at(g) + 1]; ++k) {
-        const Index neighbour = graph.neighbour[at(k)];
-        if (primal[at(neighbour)]) first = std::min(first, position[at(neighbour)]);
+        const Index neighbor = graph.neighbor[at(k)];
+        if (primal[at(neighbor)]) first = std::min(first, position[at(neighbor)]);
       }
       if (first < n && first > position[at(g)]) {
         key[at(g)] = first;
@@ -228,7 +228,7 @@ std::vector<Index> order_groups(const SymmetricPattern& p, std::span<const Index
 }
 
 // The same elimination with every subtree of the elimination tree contiguous: the fill is the same, but a
-// multifrontal solver that is handed the sequence finds its fronts only when they are neighbours in it.
+// multifrontal solver that is handed the sequence finds its fronts only when they are neighbors in it.
 std::vector<Index> postorder(const Graph& graph, std::span<const Index> order) {
   const Index n = graph.size();
   std::vector<Index> rank(at(n)), parent(at(n), -1), ancestor(at(n), -1);
@@ -236,9 +236,9 @@ std::vector<Index> postorder(const Graph& graph, std::span<const Index> order) {
   for (Index k = 0; k < n; ++k) {
     const Index g = order[at(k)];
     for (Index e = graph.start[at(g)]; e < graph.start[at(g) + 1]; ++e) {
-      // Climb from each earlier neighbour to its root so far, whose parent is k; shorten the way for those to
+      // Climb from each earlier neighbor to its root so far, whose parent is k; shorten the way for those to
       // come.
-      for (Index i = rank[at(graph.neighbour[at(e)])]; i != -1 && i < k;) {
+      for (Index i = rank[at(graph.neighbor[at(e)])]; i != -1 && i < k;) {
         const Index next = ancestor[at(i)];
         ancestor[at(i)] = k;
         if (next == -1) parent[at(i)] = k;
@@ -309,9 +309,9 @@ std::vector<Ordering> order_unknowns(const SymmetricPattern& pattern,
     Ordering& result = results.emplace_back();
     std::vector<Index> position(at(groups));
     std::iota(position.begin(), position.end(), 0);
-    if (method != OrderingMethod::as_given && !graph.neighbour.empty()) {
+    if (method != OrderingMethod::as_given && !graph.neighbor.empty()) {
       const bool by_mumps = method == OrderingMethod::pord || method == OrderingMethod::amf;
-      if (by_mumps && mumps_graph_ordering(graph.start, graph.neighbour, method, position))
+      if (by_mumps && mumps_graph_ordering(graph.start, graph.neighbor, method, position))
         result.method = method;
 #ifdef ISOCHOR_HAVE_METIS
       if (result.method == OrderingMethod::as_given && method != OrderingMethod::amd &&

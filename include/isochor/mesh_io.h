@@ -13,7 +13,7 @@
 namespace isochor {
 
 struct MeshReadOptions {
-  double scale = 1.0;  // multiplies coordinates: 1e-3 for a file in millimetres
+  double scale = 1.0;  // multiplies coordinates: 1e-3 for a file in millimeters
 };
 
 // Reads Gmsh 2.2 and 4.1 (.msh, ASCII and binary), VTK legacy (.vtk), VTK XML (.vtu), TetGen (.node/.ele with

@@ -17,7 +17,7 @@ namespace isochor {
 namespace {
 
 // MUMPS keeps state in Fortran modules: instances may live side by side, calls may not. Every call of the
-// process goes through this lock, so worlds in several threads work, one factorisation at a time.
+// process goes through this lock, so worlds in several threads work, one factorization at a time.
 std::mutex& mumps_mutex() {
   static std::mutex mutex;
   return mutex;
@@ -198,7 +198,7 @@ FactorReport MumpsSolver::factor_values() {
     icntl(14) = 2 * icntl(14) + 20;
     call(job_factor);
   }
-  if (infog(1) < 0) return failure("the factorisation");
+  if (infog(1) < 0) return failure("the factorization");
   FactorReport report;
   report.negative_pivots = two_triangles() ? -1 : infog(12);
   report.factor_nonzeros = infog(9) < 0 ? -std::int64_t{infog(9)} * 1000000 : infog(9);

@@ -24,9 +24,9 @@ class LdltSolver : public DirectSolver {
     std::vector<double> value;
   };
 
-  // Symbolic factorisation of matrix().
+  // Symbolic factorization of matrix().
   virtual FactorReport analyze_upper() = 0;
-  // Numeric factorisation of matrix(); false when a pivot is exactly zero. Throws bad_alloc without memory.
+  // Numeric factorization of matrix(); false when a pivot is exactly zero. Throws bad_alloc without memory.
   virtual bool factor_upper() = 0;
   virtual double pivot(Index k) const = 0;
   // Solves in the pivot sequence.

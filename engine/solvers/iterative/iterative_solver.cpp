@@ -103,7 +103,7 @@ FactorReport IterativeSolver::factor(std::span<const double> values) {
     if (pattern_ == nullptr || values.size() != static_cast<std::size_t>(pattern_->nonzeros())) {
       report.status = FactorStatus::failed;
       report.message = pattern_ == nullptr ? "factor was called without a successful analyze"
-                                           : "the number of values is not that of the analysed pattern";
+                                           : "the number of values is not that of the analyzed pattern";
       return report;
     }
     norm_ = matrix_norm(*pattern_, values, row_sum_);
