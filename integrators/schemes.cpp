@@ -28,7 +28,7 @@ class Continuation final : public Statics {
  public:
   std::string_view name() const override { return "continuation"; }
   bool follows_paths() const override { return true; }
-  std::size_t memory(std::size_t nodes) const override { return 3 * nodes + 1; }
+  SchemeMemory memory() const override { return {.vectors = 1, .after = 1}; }
   void finish(double h, std::span<const Vec3> x_new, std::span<const Vec3> predicted, State& state,
               std::span<double> memory) const override {
     for (std::size_t i = 0; i < x_new.size(); ++i) {
@@ -107,7 +107,11 @@ class Bdf2 final : public TimeScheme {
   std::string_view name() const override { return "bdf2"; }
   double error_constant() const override { return 2.0 / 9; }
   double largest_energy_gain() const override { return 0.01; }
-  std::size_t memory(std::size_t nodes) const override { return 1 + 6 * nodes; }
+  SchemeMemory memory() const override {
+    return {.before = 1,
+            .vectors = 2,
+            .starts = {SchemeMemory::Starts::position, SchemeMemory::Starts::velocity}};
+  }
   double begin(const State& state, std::span<const double> memory, double h,
                std::span<Vec3> predicted) const override {
     if (!(memory[0] > 0)) return begin_euler(state, h, predicted);
@@ -159,7 +163,7 @@ class GeneralizedAlpha final : public TimeScheme {
       : name_(name), am_(am), af_(af), gamma_(0.5 - am + af), beta_(0.25 * (1 - am + af) * (1 - am + af)) {}
   std::string_view name() const override { return name_; }
   void describe(Fingerprint& f) const override { f.add(name_, am_, af_); }
-  std::size_t memory(std::size_t nodes) const override { return 1 + 6 * nodes; }
+  SchemeMemory memory() const override { return {.before = 1, .vectors = 2}; }
   double begin(const State& state, std::span<const double> memory, double h,
                std::span<Vec3> predicted) const override {
     if (memory[0] == 0) return begin_euler(state, h, predicted);

@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "constraints/chamber/chamber_network.h"
-#include "constraints/stencil/embedding.h"
 #include "constraints/stencil/face_pool.h"
 #include "engine/base/text.h"
 #include "engine/mesh/cell_shape.h"
 #include "engine/scene/builder.h"
+#include "engine/scene/embedding.h"
 
 namespace isochor {
 
@@ -512,7 +512,7 @@ class CavityEffect final : public EffectSource {
       auto network = chamber_network(builder);
       ChamberContent content{
           def_.name, def_.control == CavityControl::gas, def_.polytropic, def_.ambient, rest_volume, amount};
-      const Index chamber = network->add_chamber(std::move(content), *pool, metric);
+      const Index chamber = network->add_chamber(std::move(content), *pool, metric, builder.owner());
       auto instance =
           std::make_unique<CavityInstance>(def_.name, pool, nullptr, network->row_pool, std::move(amount));
       instance->network = network;

@@ -42,8 +42,8 @@ double ChamberContent::integral(double p) const {
          ambient * std::pow(kThinnest, -1 / polytropic) * (d - 0.5 * d * d / (kThinnest * polytropic));
 }
 
-Index ChamberNetwork::add_chamber(ChamberContent content, const EnclosedVolumePool& faces,
-                                  double row_metric) {
+Index ChamberNetwork::add_chamber(ChamberContent content, const EnclosedVolumePool& faces, double row_metric,
+                                  Index effect) {
   const Index row = static_cast<Index>(chambers_.size()), first = surfaces_->stencils();
   surfaces_->add_faces(faces);
   surfaces_->finish();
@@ -54,6 +54,7 @@ Index ChamberNetwork::add_chamber(ChamberContent content, const EnclosedVolumePo
   map.offset.push_back(static_cast<Index>(map.item.size()));
   metric.push_back(row_metric);
   measure.push_back(content.rest_volume);
+  owner.push_back(effect);
   own_.push_back(compliance.size());
   compliance.push_back({row, row, 0});
   chambers_.push_back(std::move(content));

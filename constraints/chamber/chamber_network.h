@@ -38,7 +38,8 @@ struct ChamberValve {
 // potential, U = -sum (m_i(start) + supplied) mu_i + h/2 sum G (mu_i - mu_j)^2, and a symmetric tangent.
 class ChamberNetwork final : public RowPool, public LawRows, public RememberingRows {
  public:
-  Index add_chamber(ChamberContent content, const EnclosedVolumePool& faces, double metric);
+  // `effect`: whose chamber it is.
+  Index add_chamber(ChamberContent content, const EnclosedVolumePool& faces, double metric, Index effect);
   void add_valve(ChamberValve valve);
   std::optional<Index> find(const std::string& name) const;
   const ChamberContent& chamber(Index i) const { return chambers_[at(i)]; }

@@ -86,7 +86,7 @@ class CableEffect final : public EffectSource {
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     if (!builder.has_body(def_.body)) return Error{who() + ": " + builder.no_body(def_.body)};
     const BodyData& body = builder.body(def_.body);
-    std::vector<EmbeddedPoint> points;
+    std::vector<PointInBody> points;
     for (const Vec3& X : def_.points) {
       auto point = embed(body, builder.rest(), X, who());
       if (!point) return Error{point.error()};

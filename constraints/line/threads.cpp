@@ -111,7 +111,7 @@ class WindingEffect final : public EffectSource {
     const BodyData& body = builder.body(def_.body);
     auto pool = std::make_shared<SegmentPool>(def_.name, false);
     for (const auto& path : def_.paths) {
-      std::optional<EmbeddedPoint> last;
+      std::optional<PointInBody> last;
       for (const Vec3& X : path) {
         auto point = embed(body, builder.rest(), X, who());
         if (!point) return Error{point.error()};

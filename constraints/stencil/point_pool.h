@@ -1,7 +1,7 @@
 // Stencils of points: how far a weighted sum of node positions is from where it was at rest.
 #pragma once
 
-#include "constraints/stencil/embedding.h"
+#include "engine/scene/embedding.h"
 #include "engine/system/pool.h"
 
 namespace isochor {
@@ -16,7 +16,7 @@ class PointPool final : public StencilPool {
 
   // `held`: the points are compared with places in space, which may hold a body in statics.
   PointPool(std::string name, bool held) : name_(std::move(name)), held_(held) {}
-  void add(const EmbeddedPoint& point, const Frame& frame = kAxes) {
+  void add(const PointInBody& point, const Frame& frame = kAxes) {
     nodes_.push(point.nodes);
     weight_.insert(weight_.end(), point.weight.begin(), point.weight.end());
     frame_.push_back(frame);

@@ -6,7 +6,7 @@
 
 namespace isochor {
 
-Result<void> SegmentPool::push(const EmbeddedPoint& between, const Vec3& offset, std::span<const Vec3> rest) {
+Result<void> SegmentPool::push(const PointInBody& between, const Vec3& offset, std::span<const Vec3> rest) {
   nodes_.push(between.nodes);
   coefficient_.insert(coefficient_.end(), between.weight.begin(), between.weight.end());
   offset_.push_back(offset);
@@ -18,12 +18,12 @@ Result<void> SegmentPool::push(const EmbeddedPoint& between, const Vec3& offset,
   return {};
 }
 
-Result<void> SegmentPool::add(const EmbeddedPoint& first, const EmbeddedPoint& second,
+Result<void> SegmentPool::add(const PointInBody& first, const PointInBody& second,
                               std::span<const Vec3> rest) {
   return push(difference(first, second), {}, rest);
 }
 
-Result<void> SegmentPool::add_anchor(const EmbeddedPoint& point, const Vec3& place,
+Result<void> SegmentPool::add_anchor(const PointInBody& point, const Vec3& place,
                                      std::span<const Vec3> rest) {
   return push(point, -place, rest);
 }

@@ -1,7 +1,7 @@
 // Stencils of straight segments between embedded points: how much longer they are than at rest.
 #pragma once
 
-#include "constraints/stencil/embedding.h"
+#include "engine/scene/embedding.h"
 #include "engine/system/pool.h"
 
 namespace isochor {
@@ -12,9 +12,9 @@ class SegmentPool final : public StencilPool {
  public:
   SegmentPool(std::string name, bool anchored) : name_(std::move(name)), anchored_(anchored) {}
   // From `first` to `second`; refused when they coincide at rest.
-  Result<void> add(const EmbeddedPoint& first, const EmbeddedPoint& second, std::span<const Vec3> rest);
+  Result<void> add(const PointInBody& first, const PointInBody& second, std::span<const Vec3> rest);
   // Between a point of the body and a fixed place in space.
-  Result<void> add_anchor(const EmbeddedPoint& point, const Vec3& place, std::span<const Vec3> rest);
+  Result<void> add_anchor(const PointInBody& point, const Vec3& place, std::span<const Vec3> rest);
   void finish() { finish_topology(); }
 
   std::string_view name() const override { return name_; }
@@ -28,7 +28,7 @@ class SegmentPool final : public StencilPool {
   double length(std::span<const Vec3> x) const;
 
  private:
-  Result<void> push(const EmbeddedPoint& chord, const Vec3& offset, std::span<const Vec3> rest);
+  Result<void> push(const PointInBody& chord, const Vec3& offset, std::span<const Vec3> rest);
   Vec3 chord(Index segment, std::span<const Vec3> x) const;
 
   std::string name_;

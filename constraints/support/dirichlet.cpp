@@ -40,15 +40,26 @@ class RigidMotion final : public Motion {
   std::shared_ptr<Amount> amount_;
 };
 
-class BoneMotion final : public Motion {
+// What the definition says until a host sets a pose, which then counts alone.
+class LiveMotion final : public Motion {
  public:
-  explicit BoneMotion(PoseTrack track) : track_(std::move(track)) {}
-  Vec3 displacement(double t, const Vec3& rest) const override { return carried(track_, t, rest) - rest; }
-  bool never_moves() const override { return track_.keys.size() < 2; }
-  double turn(double t0, double t1) const override { return turned(track_, t0, t1); }
+  LiveMotion(std::shared_ptr<const Motion> said, std::shared_ptr<const LivePose> pose)
+      : said_(std::move(said)), pose_(std::move(pose)) {}
+  Vec3 displacement(double t, const Vec3& rest) const override {
+    if (said_ && !pose_->held()) return said_->displacement(t, rest);
+    return carried(pose_->track(), t, rest) - rest;
+  }
+  bool never_moves() const override {
+    if (pose_->set_by_host()) return false;
+    return said_ ? said_->never_moves() : pose_->track().keys.size() < 2;
+  }
+  double turn(double t0, double t1) const override {
+    return said_ && !pose_->held() ? said_->turn(t0, t1) : turned(pose_->track(), t0, t1);
+  }
 
  private:
-  PoseTrack track_;
+  std::shared_ptr<const Motion> said_;  // null: the track of the pose
+  std::shared_ptr<const LivePose> pose_;
 };
 
 // Rows of held points: d . (x - X) = d . u(t, X), by multipliers or by springs.
@@ -65,7 +76,7 @@ class HeldRows final : public RowPool, public TurningRows {
   RowFacets facets() const override { return {.turning = this}; }
   double turn(double t0, double t1) const override { return motion_->turn(t0, t1); }
   std::vector<Vec3> direction, point;  // of each row; rest positions [m]
-  std::vector<EmbeddedPoint> where;    // of each row
+  std::vector<PointInBody> where;      // of each row
 
  private:
   std::string name_;
@@ -74,8 +85,10 @@ class HeldRows final : public RowPool, public TurningRows {
 
 class DirichletInstance final : public EffectInstance {
  public:
-  explicit DirichletInstance(std::shared_ptr<Amount> amount) : amount_(std::move(amount)) {}
+  DirichletInstance(std::shared_ptr<Amount> amount, std::shared_ptr<LivePose> pose)
+      : amount_(std::move(amount)), pose_(std::move(pose)) {}
   Amount* amount() override { return amount_.get(); }
+  LivePose* pose() override { return pose_.get(); }
   std::array<Vec3, 2> reaction(const GaugeContext& c) const override {
     std::array<Vec3, 2> sum{};
     if (!rows) return sum;
@@ -101,6 +114,7 @@ class DirichletInstance final : public EffectInstance {
 
  private:
   std::shared_ptr<Amount> amount_;
+  std::shared_ptr<LivePose> pose_;
 };
 
 class DirichletEffect final : public EffectSource {
@@ -133,11 +147,13 @@ class DirichletEffect final : public EffectSource {
       list = std::move(nodes).value();
     }
     auto amount = std::make_shared<Amount>(def_.amount);
-    std::shared_ptr<const Motion> motion = std::make_shared<RigidMotion>(def_, amount);
-    if (has_bone()) motion = std::make_shared<BoneMotion>(def_.bone);
+    auto pose = std::make_shared<LivePose>(def_.bone);
+    std::shared_ptr<const Motion> said;
+    if (!has_bone()) said = std::make_shared<RigidMotion>(def_, amount);
+    const std::shared_ptr<const Motion> motion = std::make_shared<LiveMotion>(said, pose);
     std::vector<Vec3> directions = def_.directions;
     if (directions.empty()) directions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    auto instance = std::make_unique<DirichletInstance>(has_bone() ? nullptr : amount);
+    auto instance = std::make_unique<DirichletInstance>(has_bone() ? nullptr : amount, pose);
     if (def_.treatment != SupportTreatment::eliminated) {
       if (auto r = add_rows(builder, list, directions, motion, *instance); !r) return Error{r.error()};
       return std::unique_ptr<EffectInstance>(std::move(instance));
@@ -199,7 +215,7 @@ class DirichletEffect final : public EffectSource {
                         DirichletInstance& instance) const {
     if (!builder.has_body(def_.where.body)) return Error{who() + builder.no_body(def_.where.body)};
     const BodyData& body = builder.body(def_.where.body);
-    std::vector<EmbeddedPoint> points;
+    std::vector<PointInBody> points;
     for (const Index node : nodes) {
       const bool hard = def_.treatment == SupportTreatment::multiplier;
       if (hard && builder.given_directions(node) > 0) {

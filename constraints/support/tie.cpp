@@ -75,7 +75,7 @@ class TieEffect final : public EffectSource {
       }
       auto point = embed(to, builder.rest(), builder.rest()[at(node)], who());
       if (!point) return Error{point.error()};
-      const EmbeddedPoint gap = difference(point.value(), {{node}, {1.0}});
+      const PointInBody gap = difference(point.value(), {{node}, {1.0}});
       if (gap.nodes.empty()) {
         return Error{who() + ": node " + std::to_string(node - builder.body(def_.where.body).first_node) +
                      " would be tied to itself; tie nodes to another part"};

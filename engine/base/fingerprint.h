@@ -9,6 +9,7 @@
 
 #include "engine/base/base.h"
 #include "engine/base/fields.h"
+#include "isochor/ids.h"
 #include "isochor/poses.h"
 
 namespace isochor {
@@ -23,6 +24,8 @@ class Fingerprint {
     return *this;
   }
   std::uint64_t value() const { return hash_.value(); }
+  // Puts the numbers of all bodies that definitions name there, too.
+  void list_bodies(std::vector<Index>& numbers) { bodies_ = &numbers; }
 
  private:
   template <class T>
@@ -31,6 +34,9 @@ class Fingerprint {
       v.describe(*this);
     } else if constexpr (requires { v.number(); }) {
       hash_.add(static_cast<std::uint64_t>(v.number()));  // an id: whose it is says nothing about a scene
+      if constexpr (std::is_same_v<T, BodyId>) {
+        if (bodies_) bodies_->push_back(v.number());
+      }
     } else if constexpr (std::is_floating_point_v<T>) {
       const double d = v == 0 ? 0.0 : static_cast<double>(v);  // of both signs
       hash_.add(&d, sizeof d);
@@ -70,6 +76,7 @@ class Fingerprint {
   void one(const PoseTrack& track) { one(track.keys); }
 
   Hash hash_;
+  std::vector<Index>* bodies_ = nullptr;
 };
 
 }  // namespace isochor

@@ -29,6 +29,8 @@ class Parallel {
   virtual ~Parallel() = default;
   virtual int threads() const = 0;
   virtual void run(Index n, Index grain, RangeBody body) const = 0;
+  // As many threads of the same kind.
+  virtual std::unique_ptr<Parallel> another() const = 0;
 };
 
 // oneTBB arena with the given number of threads; 0: all the machine has.
@@ -38,6 +40,7 @@ class TbbParallel final : public Parallel {
   ~TbbParallel() override;
   int threads() const override { return threads_; }
   void run(Index n, Index grain, RangeBody body) const override;
+  std::unique_ptr<Parallel> another() const override { return std::make_unique<TbbParallel>(threads_); }
 
  private:
   struct Arena;
@@ -51,6 +54,7 @@ class HostParallel final : public Parallel {
   explicit HostParallel(std::shared_ptr<ThreadPool> pool) : pool_(std::move(pool)) {}
   int threads() const override { return pool_->threads(); }
   void run(Index n, Index grain, RangeBody body) const override;
+  std::unique_ptr<Parallel> another() const override { return std::make_unique<HostParallel>(pool_); }
 
  private:
   std::shared_ptr<ThreadPool> pool_;

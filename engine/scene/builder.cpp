@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <set>
 
 #include "engine/base/available_memory.h"
@@ -160,15 +161,16 @@ Result<void> check_element(const BodyDef& def) {
 
 }  // namespace
 
-Result<void> Builder::add_body(const BodyDef& def) {
+Result<Index> Builder::add_body(const BodyDef& def) {
   for (const BodyData& other : bodies_) {
-    if (other.name == def.name)
+    if (other.present() && other.name == def.name)
       return Error{"body \"" + def.name + "\": another body has this name; names must differ"};
   }
   const CellType cells = def.element == Element::tet10 ? CellType::tet10 : def.mesh.cell_type;
   if (const auto why = too_large_for_memory(def.mesh.cell_count(), cells, MeshUse::simulate); !why.empty())
     return Error{"body \"" + def.name + "\": " + why};
   const MeshReport report = check_mesh(def.mesh);
+  BodyData body;
   for (const MeshFinding& finding : report.findings) {
     if (finding.severity == Severity::error) {
       return Error{"body \"" + def.name + "\": mesh " + def.mesh.source + ": " + finding.message};
@@ -176,11 +178,11 @@ Result<void> Builder::add_body(const BodyDef& def) {
     if (finding.severity == Severity::warning) {
       const std::string text = "body \"" + def.name + "\": mesh " + def.mesh.source + ": " + finding.message;
       if (finding.code == "units") doubtful_units_ += "; mind the units: " + text;
+      body.warnings.push_back(text);
       warn(text);
     }
   }
-  if (auto r = check_element(def); !r) return r;
-  BodyData body;
+  if (auto r = check_element(def); !r) return Error{r.error()};
   body.name = def.name;
   body.element = def.element;
   body.guard_stiffness = def.guard_stiffness;
@@ -195,14 +197,91 @@ Result<void> Builder::add_body(const BodyDef& def) {
   } else {
     body.reference = def.element == Element::hex8 ? &hex8_element() : &tet4_element();
   }
-  if (auto r = add_regions(def, body); !r) return r;
+  if (auto r = add_regions(def, body); !r) return Error{r.error()};
+  place_nodes(body);
+  const Index place = slots_.take();
+  bodies_.resize(at(slots_.size()));
+  bodies_[at(place)] = std::move(body);
+  return place;
+}
+
+void Builder::place_nodes(BodyData& body) {
   body.first_node = static_cast<Index>(parts_.rest.size());
   parts_.rest.insert(parts_.rest.end(), body.mesh.nodes.begin(), body.mesh.nodes.end());
   parts_.mass.resize(parts_.rest.size(), 0);
   given_.resize(parts_.rest.size());
+  owners_.point.resize(parts_.rest.size(), -1);
   body.global_cells = body.mesh.cells;
   for (Index& n : body.global_cells) n += body.first_node;
-  bodies_.push_back(std::move(body));
+}
+
+Builder Builder::again() const {
+  Builder next;
+  next.slots_ = slots_;
+  next.world_ = world_;
+  next.quasi_static_ = quasi_static_;
+  next.doubtful_units_ = doubtful_units_;
+  next.bodies_.resize(bodies_.size());
+  std::vector<std::size_t> order(bodies_.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [this](std::size_t a, std::size_t b) {
+    return bodies_[a].first_node < bodies_[b].first_node;
+  });
+  for (const std::size_t b : order) {
+    const BodyData& old = bodies_[b];
+    if (!old.present()) continue;
+    BodyData& body = next.bodies_[b];
+    body.name = old.name;
+    body.mesh = old.mesh;
+    body.element = old.element;
+    body.reference = old.reference;
+    body.guard_threshold = old.guard_threshold;
+    body.guard_stiffness = old.guard_stiffness;
+    body.warnings = old.warnings;
+    for (const RegionData& region : old.regions) {
+      RegionData& fresh = body.regions.emplace_back();
+      fresh.name = region.name;
+      fresh.material = region.material;
+      fresh.density = region.density;
+      fresh.cells = region.cells;
+    }
+    next.warnings_.insert(next.warnings_.end(), body.warnings.begin(), body.warnings.end());
+    next.place_nodes(body);
+  }
+  return next;
+}
+
+void Builder::remove_body(Index place) {
+  bodies_[at(place)] = {};
+  slots_.release(place);
+  *this = again();
+}
+
+Result<std::vector<RegionData*>> Builder::regions_for(BodyId id, const std::string& region,
+                                                      const std::string& who) {
+  std::vector<std::string> names;
+  if (!region.empty()) names.push_back(region);
+  auto found = regions(id, names, who);
+  if (!found) return Error{found.error()};
+  std::vector<RegionData*> all;
+  for (const std::size_t r : found.value()) all.push_back(&bodies_[static_cast<std::size_t>(id)].regions[r]);
+  return all;
+}
+
+Result<void> Builder::set_material(BodyId id, const std::string& region, const MaterialPtr& material) {
+  if (!material) return Error{"set_material: the material is empty; make one with neo_hookean() or another"};
+  auto all = regions_for(id, region, "set_material");
+  if (!all) return Error{all.error()};
+  for (RegionData* r : all.value()) r->material = material;
+  return {};
+}
+
+Result<void> Builder::set_density(BodyId id, const std::string& region, double density) {
+  if (!std::isfinite(density) || density <= 0)
+    return Error{"set_density: density = " + number(density) + " kg/m^3; it must be a positive number"};
+  auto all = regions_for(id, region, "set_density");
+  if (!all) return Error{all.error()};
+  for (RegionData* r : all.value()) r->density = density;
   return {};
 }
 
@@ -453,6 +532,7 @@ Result<std::vector<Index>> Builder::select(const Selection& s, const std::string
 
 Index Builder::add_stencils(std::shared_ptr<const StencilPool> pool) {
   parts_.stencil_pools.push_back(std::move(pool));
+  owners_.stencil_pool.push_back(owner_);
   return static_cast<Index>(parts_.stencil_pools.size()) - 1;
 }
 
@@ -460,11 +540,13 @@ Index Builder::add_point(const Vec3& rest, double mass) {
   parts_.rest.push_back(rest);
   parts_.mass.push_back(mass);
   given_.emplace_back();
+  owners_.point.push_back(owner_);
   return static_cast<Index>(parts_.rest.size()) - 1;
 }
 
 Index Builder::add_rows(std::shared_ptr<const RowPool> pool) {
   parts_.row_pools.push_back(std::move(pool));
+  owners_.row_pool.push_back(owner_);
   return static_cast<Index>(parts_.row_pools.size()) - 1;
 }
 
@@ -519,7 +601,7 @@ Result<void> Builder::prescribe(Index node, const Vec3& direction, std::shared_p
 }
 
 Result<SystemParts> Builder::finish(bool needs_anchors) {
-  if (bodies_.empty()) return Error{"the scene has no body; add one"};
+  if (slots_.taken() == 0) return Error{"the scene has no body; add one"};
   auto supports = std::make_shared<SupportPrescriber>();
   for (Index i = 0; i < static_cast<Index>(given_.size()); ++i) {
     std::vector<SupportPrescriber::Term> terms;

@@ -10,6 +10,7 @@
 #include "engine/elements/material_model.h"
 #include "engine/elements/reference_element.h"
 #include "engine/scene/ids.h"
+#include "engine/scene/live_pose.h"
 #include "engine/system/state.h"
 #include "engine/system/system.h"
 #include "isochor/bodies.h"
@@ -32,8 +33,13 @@ class ISOCHOR_API Amount {
   void set(double value) { pending_ = value; }
   // Announces the increment [t0, t1]; a pending value ramps over it.
   void begin(double t0, double t1);
-  // Whether a host has set it.
+  // Whether a host has set it, and whether what was set is valid by now.
   bool set_by_host() const { return held_ || pending_; }
+  bool held() const { return held_; }
+  void forget() {
+    held_ = false;
+    pending_.reset();
+  }
   void save(std::vector<double>& out) const;
   bool load(std::span<const double>& in);
   // Takes the numbers of one amount off a list; false where they are none.
@@ -64,6 +70,7 @@ class EffectInstance {
  public:
   virtual ~EffectInstance() = default;
   virtual Amount* amount() { return nullptr; }
+  virtual LivePose* pose() { return nullptr; }
   virtual void gauges(const GaugeContext& context, std::vector<Gauge>& out) const {
     (void)context;
     (void)out;
@@ -137,7 +144,10 @@ struct BodyData {
   std::vector<SpanningVolume> spanning;
   double guard_threshold = 0.5;
   std::optional<double> guard_stiffness;
-  std::vector<Index> global_cells;  // mesh.cells with scene node numbers
+  std::vector<Index> global_cells;    // mesh.cells with scene node numbers
+  std::vector<std::string> warnings;  // about its mesh
+
+  bool present() const { return reference != nullptr; }  // false: a place that is free
 };
 
 // A displacement over time, shared by the nodes it moves.
@@ -160,15 +170,30 @@ struct HeldDirection {
   Vec3 direction{};
 };
 
+// Who made the parts of a scene: the numbers of effects, -1 for none.
+struct Owners {
+  std::vector<Index> point;  // of nodes without a body, by node; others: -1
+  std::vector<Index> stencil_pool, row_pool;
+};
+
 class ISOCHOR_API Builder {
  public:
-  // Bodies first.
-  Result<void> add_body(const BodyDef& def);
+  // Bodies first; returns the place that one has.
+  Result<Index> add_body(const BodyDef& def);
+  // A builder that has the bodies of this one and nothing built on them: in it, bodies may change.
+  Builder again() const;
+  void remove_body(Index place);
+  // The regions that a definition is for; empty: all. The error names those that there are.
+  Result<void> set_material(BodyId id, const std::string& region, const MaterialPtr& material);
+  Result<void> set_density(BodyId id, const std::string& region, double density);
+
+  const Slots& body_slots() const { return slots_; }
+  // Places of bodies; those that are free hold none (BodyData::present()).
   Index body_count() const { return static_cast<Index>(bodies_.size()); }
   const BodyData& body(BodyId id) const { return bodies_[static_cast<std::size_t>(id)]; }
   bool has_body(BodyId id) const { return find(id) == WorldNumbers::Found::here; }
   // Why it has not: the end of a sentence.
-  std::string no_body(BodyId id) const { return why_not(find(id), "body", id.number(), body_count()); }
+  std::string no_body(BodyId id) const { return why_not(find(id), "body", id.number(), slots_.taken()); }
   // The number of its world; 0: ids are not asked whose they are.
   std::uint64_t world() const { return world_; }
   void set_world(std::uint64_t number) { world_ = number; }
@@ -209,6 +234,8 @@ class ISOCHOR_API Builder {
   // What each effect holds; directions that depend on earlier ones belong to the earlier effect.
   std::vector<std::vector<HeldDirection>> held_directions(std::size_t effects) const;
   void set_owner(Index effect) { owner_ = effect; }
+  Index owner() const { return owner_; }
+  const Owners& owners() const { return owners_; }
   // What effects share while they are built, made by the first that asks: chambers that are connected live in
   // one pool.
   template <class T>
@@ -237,14 +264,20 @@ class ISOCHOR_API Builder {
  private:
   // A definition that names no body is about the first.
   WorldNumbers::Found find(BodyId id) const {
-    const auto found = WorldNumbers::look_up(id, body_count(), world_);
-    return found == WorldNumbers::Found::unsaid && body_count() > 0 ? WorldNumbers::Found::here : found;
+    const auto found = WorldNumbers::look_up(id, slots_, world_);
+    if (found != WorldNumbers::Found::unsaid || slots_.size() == 0) return found;
+    return slots_.holds(0) ? WorldNumbers::Found::here : WorldNumbers::Found::removed;
   }
   Result<void> add_regions(const BodyDef& def, BodyData& body) const;
+  Result<std::vector<RegionData*>> regions_for(BodyId id, const std::string& region, const std::string& who);
+  void place_nodes(BodyData& body);
   Result<void> build_region(BodyData& body, RegionData& region);
 
-  std::vector<BodyData> bodies_;
+  Slots slots_;
+  std::vector<BodyData> bodies_;  // by place
   SystemParts parts_;
+  // The effect that each part is of, -1: none; by node, stencil pool and row pool.
+  Owners owners_;
   struct Given {
     Vec3 direction;
     std::shared_ptr<const Motion> motion;

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "engine/scene/slots.h"
 #include "isochor/ids.h"
 
 namespace isochor {
@@ -12,22 +13,24 @@ struct WorldNumbers {
   static std::uint64_t next_world();
 
   template <class What>
-  static Id<What> make(Index number, std::uint64_t world, std::uint32_t generation = 1) {
+  static Id<What> make(Index number, std::uint64_t world, std::uint32_t generation) {
     Id<What> id(number);
     id.generation_ = generation;
     id.world_ = world;
     return id;
   }
 
-  // Where an id leads among `count` things of a world, whose places were given away `generation` times.
+  // Where an id leads among the things of a world.
   enum class Found : std::uint8_t { here, unsaid, no_such_number, other_world, removed };
   template <class What>
-  static Found look_up(const Id<What>& id, Index count, std::uint64_t world, std::uint32_t generation = 1) {
-    if (id.generation_ == 0) return count == 1 ? Found::here : Found::unsaid;
+  static Found look_up(const Id<What>& id, const Slots& places, std::uint64_t world) {
+    if (id.generation_ == 0) return places.size() == 1 && places.holds(0) ? Found::here : Found::unsaid;
     if (id.world_ != 0 && id.world_ != world) return Found::other_world;
-    if (id.number_ < 0 || id.number_ >= count) return Found::no_such_number;
-    if (id.generation_ != Id<What>::kByNumber && id.generation_ != generation) return Found::removed;
-    return Found::here;
+    if (id.number_ < 0 || id.number_ >= places.size()) return Found::no_such_number;
+    if (!places.holds(id.number_)) return Found::removed;
+    const bool same =
+        id.generation_ == Id<What>::kByNumber || id.generation_ == places.generation(id.number_);
+    return same ? Found::here : Found::removed;
   }
 };
 

@@ -26,6 +26,7 @@ std::vector<Index> connected_parts(const SceneFacts& facts, Index& count) {
     return i;
   };
   for (const BodyData& body : facts.bodies) {
+    if (!body.present()) continue;
     const auto per = static_cast<std::size_t>(nodes_per_cell(body.mesh.cell_type));
     for (std::size_t c = 0; c < body.global_cells.size(); c += per) {
       for (std::size_t k = 1; k < per; ++k)
@@ -51,6 +52,7 @@ std::vector<Index> connected_parts(const SceneFacts& facts, Index& count) {
 const BodyData& body_of(const SceneFacts& facts, Index node) {
   const BodyData* found = &facts.bodies.front();
   for (const BodyData& b : facts.bodies) {
+    if (!b.present()) continue;
     if (node >= b.first_node) found = &b;
   }
   return *found;
@@ -284,6 +286,7 @@ class FunctionNumbers {
  public:
   explicit FunctionNumbers(const SceneFacts& facts) : facts_(facts) {
     for (const BodyData& b : facts.bodies) {
+      if (!b.present()) continue;
       first_.push_back(next_);
       next_ += static_cast<std::int64_t>(b.mesh.cell_count()) * kMost;
     }
@@ -298,6 +301,7 @@ class FunctionNumbers {
     const auto functions = facts_.parts.stencil_pools[at(pool)]->functions();
     for (std::size_t b = 0; b < facts_.bodies.size(); ++b) {
       const BodyData& body = facts_.bodies[b];
+      if (!body.present()) continue;
       for (const RegionData& r : body.regions) {
         if (r.volume_pool[0] == pool || r.volume_pool[1] == pool)
           return of_cell(b, r.cells[at(item / functions)], item % functions);
@@ -427,6 +431,7 @@ std::vector<HardRow> fixed_volumes(const SceneFacts& facts, const FunctionNumber
   std::vector<HardRow> rows(at(count));
   for (std::size_t b = 0; b < facts.bodies.size(); ++b) {
     const BodyData& body = facts.bodies[b];
+    if (!body.present()) continue;
     const int functions = body.reference->points > 1 ? body.reference->corners : 1;
     for (const RegionData& region : body.regions) {
       const auto data = solid_data(*body.reference, facts.parts.rest, body.global_cells, region.cells,

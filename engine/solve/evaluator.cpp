@@ -61,6 +61,7 @@ void Evaluator::clamp(std::span<double> lambda) const {
 void Evaluator::calibrate() {
   const System& s = *system_;
   const std::vector<double> no_multipliers(at(s.rows()), 0.0), no_loads(at(s.prescribed_rows()), 0.0);
+  assembly_.set_increment({});
   assembly_.evaluate(Want::hessian, Definiteness::exact, s.parts().rest, no_multipliers, no_loads);
   assembly_.stiffness_diagonal(rest_stiffness_);
   double largest = 0;

@@ -11,6 +11,8 @@ class Evaluator {
  public:
   Evaluator(std::shared_ptr<const System> system, const Parallel& parallel);
 
+  // Measures the stiffness of the system at rest.
+  void calibrate();
   // Of a solve: nothing of an earlier one is left.
   void begin(const SaddleProblem& p);
 
@@ -66,7 +68,6 @@ class Evaluator {
   std::span<const double> stiffness() const { return stiffness_; }
 
  private:
-  void calibrate();
   double force_norm(const Iterate& it, double floor) const;
 
   std::shared_ptr<const System> system_;

@@ -26,6 +26,11 @@ class SaddlePoint {
   const Assembly& assembly() const { return evaluator_.assembly(); }
   Assembly& assembly() { return evaluator_.assembly(); }
   LinearSolver& linear_solver() { return kkt_.linear_solver(); }
+  // The system has other numbers than before, in the same structure.
+  void take_new_numbers() {
+    evaluator_.calibrate();
+    kkt_.take_new_numbers();
+  }
   // For what replaces it; there is no solving any more.
   std::unique_ptr<LinearSolver> release_solver() { return kkt_.release_solver(); }
   std::unique_ptr<LinearSolver> release_unsymmetric() { return kkt_.release_unsymmetric(); }

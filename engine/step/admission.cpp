@@ -45,6 +45,7 @@ Admission::Admission(const std::vector<BodyData>& bodies, const SystemParts& par
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const BodyData& body = bodies[b];
     names_.push_back(body.name);
+    if (!body.present()) continue;
     const bool tets = body.mesh.cell_type == CellType::tet4;
     for (const RegionData& region : body.regions) {
       Region r;

@@ -66,7 +66,7 @@ double Controller::largest_entry(double t0, double t1) {
 void Controller::begin_amounts(double t0, double t1) {
   amounts_before_.clear();
   amounts_.save(amounts_before_);
-  amounts_.begin(context_.options.scheme->has_inertia() ? t1 : t0, t1);
+  amounts_.begin(t0, t1, !context_.options.scheme->has_inertia());
 }
 
 void Controller::take_cancel(StepReport& report) {
@@ -86,7 +86,9 @@ StepReport Controller::cancelled() {
 // one in balance takes its place.
 bool Controller::give_back_unfinished(StepReport& report) {
   if (!settled_ || report.status != StepStatus::rejected) return false;
+  std::vector<Vec3> forces = std::move(context_.state.forces);
   context_.state = *settled_;
+  context_.state.forces = std::move(forces);  // those are the host's
   settled_.reset();
   const auto stencils = stepper_.surroundings().restore(context_.pool_memory());
   report.reason +=

@@ -2,14 +2,16 @@
 
 namespace isochor {
 
-IncrementData::IncrementData(const System& system, const WorldOptions& options, std::vector<double> weight)
-    : options_(options),
+IncrementData::IncrementData(const System& system, const Gravity& gravity, const State& state,
+                             std::vector<double> weight)
+    : gravity_(gravity),
+      state_(state),
       weight_(std::move(weight)),
       force_(at(system.nodes())),
       target_(at(system.rows())),
       prescribed_(at(system.prescribed_rows())),
       position_(system.free_bases().size()) {
-  evaluate(system, 0);
+  evaluate(system, state.t);
 }
 
 void IncrementData::evaluate(const System& system, double t) {
@@ -17,6 +19,7 @@ void IncrementData::evaluate(const System& system, double t) {
   const Vec3 g = gravity(t);
   for (std::size_t i = 0; i < force_.size(); ++i) force_[i] = weight_[i] * g;
   for (const auto& load : parts.loads) load->add(t, force_);
+  for (std::size_t i = 0; i < state_.forces.size(); ++i) force_[i] += state_.forces[i];
   for (std::size_t p = 0; p < parts.row_pools.size(); ++p) {
     const RowPool& pool = *parts.row_pools[p];
     auto& all = pool.law == RowLaw::compliant ? target_ : prescribed_;

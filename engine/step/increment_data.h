@@ -2,16 +2,17 @@
 // taken once.
 #pragma once
 
+#include "engine/scene/amounts.h"
 #include "engine/solve/saddle_point.h"
 #include "engine/system/state.h"
-#include "isochor/options.h"
 
 namespace isochor {
 
 class IncrementData {
  public:
-  // `weight` is the mass that gravity acts on, one a node [kg].
-  IncrementData(const System& system, const WorldOptions& options, std::vector<double> weight);
+  // `weight` is the mass that gravity acts on, one a node [kg]. Gravity and the forces of the state are
+  // looked at again and again: both outlive this.
+  IncrementData(const System& system, const Gravity& gravity, const State& state, std::vector<double> weight);
 
   // Fills the arrays for time t.
   void evaluate(const System& system, double t);
@@ -19,13 +20,14 @@ class IncrementData {
   // of t then.
   SaddleProblem problem(const System& system, const State& state, double t);
 
-  Vec3 gravity(double t) const { return isochor::evaluate(options_.gravity_curve, t) * options_.gravity; }
+  Vec3 gravity(double t) const { return gravity_.at(t); }
   std::span<const double> weight() const { return weight_; }
   std::span<const double> target() const { return target_; }
   std::span<const double> prescribed() const { return prescribed_; }
 
  private:
-  const WorldOptions& options_;
+  const Gravity& gravity_;
+  const State& state_;
   std::vector<double> weight_;               // [kg]
   std::vector<Vec3> force_;                  // dead loads [N]
   std::vector<double> target_, prescribed_;  // of compliant rows; multipliers of prescribed ones

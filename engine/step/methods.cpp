@@ -35,9 +35,9 @@ bool Methods::large(const SystemParts& parts) const {
          options_.scheme->has_inertia() && !options_.scheme->follows_paths();
 }
 
-Result<void> Methods::choose(SystemParts parts) {
+Result<void> Methods::choose(SystemParts parts, const System* like) {
   if (std::string why = incompatible(parts, options_); !why.empty()) return Error{std::move(why)};
-  return make(std::move(parts), false);
+  return make(std::move(parts), false, like);
 }
 
 Result<void> Methods::replace_stencils(std::vector<std::shared_ptr<const StencilPool>> pools) {
@@ -49,33 +49,55 @@ Result<void> Methods::replace_stencils(std::vector<std::shared_ptr<const Stencil
   return {};
 }
 
-Result<void> Methods::compile_system(SystemParts parts, bool ascent) {
+Result<Methods::Renewed> Methods::renew(SystemParts parts) {
+  if (std::string why = incompatible(parts, options_); !why.empty()) return Error{std::move(why)};
+  const bool prefer_iterative = large(parts), same_solver = prefer_iterative == large(system_->parts());
+  auto compiled = compile_system(std::move(parts), system_.get());
+  if (!compiled) return Error{compiled.error()};
+  std::shared_ptr<System> system = std::move(compiled).value();
+  const bool same = system->shares_tables(*system_);
+  // Methods that sort rows by their numbers are made anew.
+  if (same && !climbs(options_.method) && options_.method != Method::position_based) {
+    // All who work with the system look at this one.
+    *system_ = std::move(*system);
+    chosen_->take_new_numbers();
+    list_stand_ins();
+    return Renewed::numbers;
+  }
+  const StageSeconds spent = chosen_->seconds();
+  if (auto r = make_for(std::move(system), prefer_iterative, same_solver); !r) return Error{r.error()};
+  chosen_->add_seconds(spent);
+  return same ? Renewed::numbers : Renewed::structure;
+}
+
+Result<std::shared_ptr<System>> Methods::compile_system(SystemParts parts, const System* like) const {
+  const bool ascent = climbs(options_.method);
   parts.treatment = treatment_of(options_.method);
   // Condensed rows make the stiffness as stiff as they are, which is no matter to a factorization but slows
   // an iteration.
   if (options_.method == Method::automatic && (large(parts) || options_.solver == Solver::iterative))
     parts.treatment = RowTreatment::saddle;
   parts.border_wide_rows = !ascent;
-  auto compiled = System::compile(std::move(parts));
+  auto compiled = System::compile(std::move(parts), like);
   if (!compiled) return Error{compiled.error()};
-  system_ = std::move(compiled).value();
-  if (ascent && static_cast<Index>(system_->dual_rows().size()) != system_->rows()) {
+  const System& system = *compiled.value();
+  if (ascent && static_cast<Index>(system.dual_rows().size()) != system.rows()) {
     return Error{
         "world: method " + std::string(to_string(options_.method)) +
         " takes all rows as dual, but an effect asks for another treatment of its rows; leave it automatic"};
   }
-  if (const std::string what = PositionBased::unsupported(*system_);
+  if (const std::string what = PositionBased::unsupported(system);
       options_.method == Method::position_based && !what.empty()) {
     return Error{"world: method position_based has no answer for this scene: " + what +
                  "; use another method"};
   }
-  if (options_.solver == Solver::cholmod_supernodal && !system_->kept_rows().empty()) {
+  if (options_.solver == Solver::cholmod_supernodal && !system.kept_rows().empty()) {
     return Error{"world: solver cholmod_supernodal factors positive definite matrices, and " +
-                 std::to_string(system_->kept_rows().size()) +
+                 std::to_string(system.kept_rows().size()) +
                  " rows are in the matrix; use method condensation with element rows and nu < 0.5, method "
                  "dual_gradients or augmented_gradients, or another solver"};
   }
-  return {};
+  return compiled;
 }
 
 // What replaces a system of the same unknowns works in its memory: fresh pages cost more than all else here.
@@ -88,8 +110,8 @@ std::unique_ptr<LinearSolver> Methods::release_solver(std::unique_ptr<LinearSolv
   return solver;
 }
 
-Result<void> Methods::make(SystemParts parts, bool keep_solvers) {
-  // Augmented where the stiffness is not definite, and rows in the matrix where that is not enough.
+// Augmented where the stiffness is not definite, and rows in the matrix where that is not enough.
+void Methods::list_stand_ins() {
   made_.clear();
   stand_ins_.clear();
   if (treatment_of(options_.method) == RowTreatment::dual || options_.method == Method::augmented_ascent)
@@ -97,19 +119,28 @@ Result<void> Methods::make(SystemParts parts, bool keep_solvers) {
   if (!stand_ins_.empty() || options_.method == Method::augmented_gradients)
     stand_ins_.push_back(Method::saddle_point);
   made_.resize(stand_ins_.size());
-  // Next to a limit point the sign of a vanishing eigenvalue counts.
+}
+
+Result<void> Methods::make(SystemParts parts, bool keep_solvers, const System* like) {
+  const bool prefer_iterative = large(parts);
+  auto compiled = compile_system(std::move(parts), like);
+  if (!compiled) return Error{compiled.error()};
+  return make_for(std::move(compiled).value(), prefer_iterative, keep_solvers);
+}
+
+Result<void> Methods::make_for(std::shared_ptr<System> system, bool prefer_iterative, bool keep_solvers) {
   SolverWishes wishes;
-  wishes.prefer_iterative = large(parts);
+  wishes.prefer_iterative = prefer_iterative && !system->couples();
+  // Next to a limit point the sign of a vanishing eigenvalue counts.
   wishes.single_precision = !options_.scheme->follows_paths();
-  if (auto r = compile_system(std::move(parts), climbs(options_.method)); !r) return r;
-  wishes.prefer_iterative = wishes.prefer_iterative && !system_->couples();
   std::unique_ptr<LinearSolver> solver, unsymmetric;
-  if (keep_solvers)
-    solver = release_solver(unsymmetric);
-  else
-    solver = make_linear_solver(options_.solver, wishes);
+  if (!keep_solvers) solver = make_linear_solver(options_.solver, wishes);
+  if (!keep_solvers && !solver)
+    return Error{"world: this build does not have the linear solver that is asked for"};
+  if (keep_solvers) solver = release_solver(unsymmetric);
+  system_ = std::move(system);
   if (system_->couples() && !unsymmetric) unsymmetric = make_unsymmetric_solver(options_.solver);
-  if (!solver) return Error{"world: this build does not have the linear solver that is asked for"};
+  list_stand_ins();
   make_chosen(std::move(solver), std::move(unsymmetric));
   counts_ = count_rows(*system_);
   return {};
@@ -142,8 +173,7 @@ std::unique_ptr<SaddlePoint> Methods::make_stand_in(Method method) const {
   parts.border_wide_rows = true;
   auto compiled = System::compile(std::move(parts));
   if (!compiled) return nullptr;
-  if (options_.solver == Solver::cholmod_supernodal && !compiled.value()->kept_rows().empty())
-    return nullptr;
+  if (options_.solver == Solver::cholmod_supernodal && !compiled.value()->kept_rows().empty()) return nullptr;
   auto solver = make_linear_solver(options_.solver, SolverWishes{});
   if (!solver) return nullptr;
   auto other = std::make_unique<Newton>(std::move(compiled).value(), parallel_, std::move(solver));

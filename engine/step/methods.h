@@ -13,10 +13,15 @@ class Methods {
   // Both outlive this.
   Methods(const WorldOptions& options, const Parallel& parallel) : options_(options), parallel_(parallel) {}
 
-  // Chooses treatment of rows, linear solver and method; refuses what does not go together.
-  Result<void> choose(SystemParts parts);
+  // Chooses treatment of rows, linear solver and method; refuses what does not go together. Tables of `like`
+  // are shared where they are the same.
+  Result<void> choose(SystemParts parts, const System* like = nullptr);
   // A system with other stencils in place of the present ones takes over its unknowns, solvers and memory.
   Result<void> replace_stencils(std::vector<std::shared_ptr<const StencilPool>> pools);
+  // Goes on with the parts of a scene that was changed: with numbers alone where its structure is the same,
+  // else with a system of its own, which takes over the solvers. On an error all is as it was.
+  enum class Renewed : std::uint8_t { numbers, structure };
+  Result<Renewed> renew(SystemParts parts);
   // Whether there is a method; it is lost where memory runs out while stencils are replaced.
   bool ready() const { return chosen_ != nullptr; }
 
@@ -37,8 +42,10 @@ class Methods {
   void set_interrupt(std::function<bool()> asked);
 
  private:
-  Result<void> make(SystemParts parts, bool keep_solvers);
-  Result<void> compile_system(SystemParts parts, bool ascent);
+  Result<void> make(SystemParts parts, bool keep_solvers, const System* like = nullptr);
+  Result<void> make_for(std::shared_ptr<System> system, bool prefer_iterative, bool keep_solvers);
+  void list_stand_ins();
+  Result<std::shared_ptr<System>> compile_system(SystemParts parts, const System* like) const;
   std::unique_ptr<LinearSolver> release_solver(std::unique_ptr<LinearSolver>& unsymmetric);
   void make_chosen(std::unique_ptr<LinearSolver> solver, std::unique_ptr<LinearSolver> unsymmetric);
   bool large(const SystemParts& parts) const;
@@ -47,7 +54,7 @@ class Methods {
   const WorldOptions& options_;
   const Parallel& parallel_;
   std::function<bool()> interrupt_;
-  std::shared_ptr<const System> system_;
+  std::shared_ptr<System> system_;
   std::unique_ptr<SaddlePoint> chosen_;
   PathFollower* path_follower_ = nullptr;  // chosen_, where it is one
   std::vector<Method> stand_ins_;

@@ -16,6 +16,8 @@ struct StepContext {
   IncrementData& data;
   State& state;
   StateLayout layout;
+  // That the scene begins with; empty where stencils do not change with what is close.
+  const std::vector<std::shared_ptr<const StencilPool>>& first_stencils;
 
   const System& system() const { return methods.system(); }
   std::span<const double> pool_memory() const { return layout.of_pools(state.extra); }

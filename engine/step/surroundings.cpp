@@ -4,9 +4,7 @@
 
 namespace isochor {
 
-Surroundings::Surroundings(const StepContext& context) : context_(context) {
-  if (context_.system().renews_stencils()) first_stencils_ = context_.system().parts().stencil_pools;
-}
+Surroundings::Surroundings(const StepContext& context) : context_(context) {}
 
 Surroundings::Found Surroundings::renew(std::span<const Vec3> x, Around around) {
   Found found;
@@ -53,7 +51,7 @@ Result<void> Surroundings::restore(std::span<const double> memory) {
     const auto p = at(index);
     // Zeros: no step has been accepted, and the stencils are those that the scene began with.
     if (std::all_of(kept.begin(), kept.end(), [](double v) { return v == 0; })) {
-      pools[p] = first_stencils_[p];
+      pools[p] = context_.first_stencils[p];
     } else {
       auto restored = stencils->restored(kept);
       if (!restored) return Error{restored.error()};

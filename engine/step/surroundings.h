@@ -34,7 +34,6 @@ class Surroundings {
 
  private:
   StepContext context_;
-  std::vector<std::shared_ptr<const StencilPool>> first_stencils_;  // that the scene began with
 };
 
 }  // namespace isochor

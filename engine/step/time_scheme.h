@@ -6,6 +6,16 @@
 
 namespace isochor {
 
+// Numbers that a scheme keeps between steps, beside positions and velocities: some, then lists of one vector
+// a node, then some. All zero at the start, which a scheme takes as having no past.
+struct SchemeMemory {
+  enum class Starts : std::uint8_t { zero, position, velocity };
+  std::size_t before = 0, vectors = 0, after = 0;
+  std::array<Starts, 4> starts{};  // of each list: what a node without a past has in it
+
+  std::size_t numbers(std::size_t nodes) const { return before + 3 * vectors * nodes + after; }
+};
+
 class TimeScheme {
  public:
   virtual ~TimeScheme() = default;
@@ -28,12 +38,7 @@ class TimeScheme {
   // it without end where large rotations, impacts or long steps break what their proofs assume.
   virtual double largest_energy_gain() const { return 0.05; }
 
-  // Numbers that the scheme keeps between steps, beside positions and velocities; all zero at the start,
-  // which a scheme takes as having no past.
-  virtual std::size_t memory(std::size_t nodes) const {
-    (void)nodes;
-    return 0;
-  }
+  virtual SchemeMemory memory() const { return {}; }
   // Begins a step of length h: inertia is s/2 |x - predicted|^2 in the mass metric. Fills `predicted`, where
   // inertia alone would carry the nodes, and returns s [1/s^2]: 1/h^2 for implicit Euler, 0 in statics.
   virtual double begin(const State& state, std::span<const double> memory, double h,

@@ -295,8 +295,8 @@ void Assembly::kkt_values(double mass_scale, std::span<double> values) const {
       if (i == j) {
         for (int k = 0; k < 3; ++k) block(k, k) += mass_scale * s.parts().mass[at(i)];
       }
-      if (!s.gathers().block_mass.empty()) {
-        for (int k = 0; k < 3; ++k) block(k, k) += mass_scale * s.gathers().block_mass[at(d)];
+      if (!s.block_mass().empty()) {
+        for (int k = 0; k < 3; ++k) block(k, k) += mass_scale * s.block_mass()[at(d)];
       }
       to_free_basis(s, i, j, block);
       for (Index c = 0; c < kj; ++c) {
@@ -334,9 +334,9 @@ void Assembly::kkt_values(double mass_scale, std::span<double> values) const {
 void Assembly::mass_times(std::span<const Vec3> v, std::span<Vec3> y) const {
   const System& s = *system_;
   for (std::size_t i = 0; i < v.size(); ++i) y[i] = s.parts().mass[i] * v[i];
-  for (std::size_t d = 0; d < s.gathers().block_mass.size(); ++d) {
+  for (std::size_t d = 0; d < s.block_mass().size(); ++d) {
     const auto [i, j] = s.gathers().block_ends[d];
-    const double m = s.gathers().block_mass[d];
+    const double m = s.block_mass()[d];
     y[at(i)] += m * v[at(j)];
     if (i != j) y[at(j)] += m * v[at(i)];
   }

@@ -86,6 +86,9 @@ struct RowSet {
   // none. A cable that only pulls has lower = 0. A bounded row reads: lambda is where the projection of
   // lambda + theta / metric on the bounds leaves it, theta = phi - target - C lambda (complementarity).
   std::vector<double> lower, upper;
+  // The effect that each row is of, where a pool has rows of several: their numbers (Builder::owner()).
+  // Empty: all are of the one that added the pool.
+  std::vector<Index> owner;
   // How far a row that its bound has let go may be violated at the end of an iteration, in the unit of phi:
   // longer steps are cut. For gaps to what is thin, which a long step would leave behind.
   double largest_overshoot = std::numeric_limits<double>::infinity();

@@ -17,7 +17,7 @@ RowTreatment RowTreatments::choose(const RowPool& pool) const {
   constexpr double smallest = 1e-6;  // compliance against the row metric: mu / kappa for volume rows
   if (pool.treatment != RowTreatment::automatic) return pool.treatment;
   if (couples(pool)) return RowTreatment::saddle;
-  switch (system_.parts_.treatment) {
+  switch (system_.parts().treatment) {
     case RowTreatment::automatic:
       break;
     case RowTreatment::condensed:
@@ -26,14 +26,14 @@ RowTreatment RowTreatments::choose(const RowPool& pool) const {
       return check_condensed(pool, "") ? RowTreatment::condensed : RowTreatment::saddle;
     case RowTreatment::dual:
     case RowTreatment::augmented:
-      if (!system_.parts_.border_wide_rows || !few_wide_rows(pool)) return system_.parts_.treatment;
+      if (!system_.parts().border_wide_rows || !few_wide_rows(pool)) return system_.parts().treatment;
       return bounded(pool) ? RowTreatment::dual : RowTreatment::bordered;
     case RowTreatment::saddle:
     case RowTreatment::bordered:
       return RowTreatment::saddle;
   }
   if (pool.rows() == 0 || !check_condensed(pool, "")) return RowTreatment::saddle;
-  const Index functions = system_.parts_.stencil_pools[at(pool.stencil_pool)]->functions();
+  const Index functions = system_.parts().stencil_pools[at(pool.stencil_pool)]->functions();
   for (Index r = 0; r < pool.rows(); ++r) {
     for (const Index f : pool.map[r]) {
       if (f / functions != pool.map[r][0] / functions) return RowTreatment::saddle;
@@ -47,7 +47,7 @@ RowTreatment RowTreatments::choose(const RowPool& pool) const {
 
 bool RowTreatments::couples(const RowPool& pool) const {
   if (!system_.couples()) return false;
-  const LaggedStencils* lagged = system_.parts_.stencil_pools[at(pool.stencil_pool)]->facets().lagged;
+  const LaggedStencils* lagged = system_.parts().stencil_pools[at(pool.stencil_pool)]->facets().lagged;
   return lagged && lagged->couples();
 }
 
@@ -55,7 +55,7 @@ bool RowTreatments::couples(const RowPool& pool) const {
 bool RowTreatments::few_wide_rows(const RowPool& pool) const {
   constexpr Index few = 16;
   if (pool.rows() == 0 || pool.rows() > few) return false;
-  const Index first = system_.row_data_.first[at(index_of(pool))];
+  const Index first = system_.row_data().first[at(index_of(pool))];
   for (Index r = first; r < first + pool.rows(); ++r) {
     if (nodes_of_row(r) > local_row_nodes) return true;
   }
@@ -63,19 +63,18 @@ bool RowTreatments::few_wide_rows(const RowPool& pool) const {
 }
 
 Index RowTreatments::index_of(const RowPool& pool) const {
-  const auto& pools = system_.parts_.row_pools;
+  const auto& pools = system_.parts().row_pools;
   return static_cast<Index>(
       std::find_if(pools.begin(), pools.end(), [&](const auto& p) { return p.get() == &pool; }) -
       pools.begin());
 }
 
 std::size_t RowTreatments::nodes_of_row(Index row) const {
-  return system_.gathers_.row_begin[at(row) + 1] - system_.gathers_.row_begin[at(row)];
+  return system_.gathers().row_begin[at(row) + 1] - system_.gathers().row_begin[at(row)];
 }
 
 Result<void> RowTreatments::sort() {
-  const auto& pools = system_.parts_.row_pools;
-  TreatedRows& rows = system_.treated_;
+  const auto& pools = system_.parts().row_pools;
   for (std::size_t p = 0; p < pools.size(); ++p) {
     const RowPool& pool = *pools[p];
     if (pool.law != RowLaw::compliant) continue;
@@ -83,15 +82,15 @@ Result<void> RowTreatments::sort() {
     const RowTreatment treatment = choose(pool);
     auto& list = list_of(treatment);
     for (Index r = 0; r < pool.rows(); ++r) {
-      const Index row = system_.row_data_.first[p] + r;
+      const Index row = system_.row_data().first[p] + r;
       list.push_back(row);
       if (treatment == RowTreatment::augmented && nodes_of_row(row) <= local_row_nodes)
-        rows.augmented.row.push_back(row);
+        rows_.augmented.row.push_back(row);
     }
   }
-  rows.unknown.assign(at(system_.rows()), -1);
-  for (std::size_t k = 0; k < rows.kept.size(); ++k)
-    rows.unknown[at(rows.kept[k])] = system_.free_unknowns() + static_cast<Index>(k);
+  rows_.unknown.assign(at(system_.rows()), -1);
+  for (std::size_t k = 0; k < rows_.kept.size(); ++k)
+    rows_.unknown[at(rows_.kept[k])] = system_.free_unknowns() + static_cast<Index>(k);
   collect_compliance();
   return {};
 }
@@ -117,7 +116,7 @@ Result<void> RowTreatments::check_wish(const RowPool& pool) const {
                  "rows with bounds change between free and held, so they are not bordered; use treatment "
                  "saddle or automatic"};
   }
-  if (static_cast<Index>(system_.treated_.bordered.size()) + pool.rows() > most_bordered_rows) {
+  if (static_cast<Index>(rows_.bordered.size()) + pool.rows() > most_bordered_rows) {
     return Error{who + std::to_string(pool.rows()) +
                  " rows to border; each costs a solve a factorization, so " +
                  std::to_string(most_bordered_rows) + " in a scene are the limit; use treatment saddle"};
@@ -127,33 +126,33 @@ Result<void> RowTreatments::check_wish(const RowPool& pool) const {
 
 // The compliance entries of bordered and of dual rows. Those of one entry are of one pool, and treated alike.
 void RowTreatments::collect_compliance() {
-  TreatedRows& rows = system_.treated_;
   std::vector<Index> border(at(system_.rows()), -1);
-  for (std::size_t k = 0; k < rows.bordered.size(); ++k) border[at(rows.bordered[k])] = static_cast<Index>(k);
+  for (std::size_t k = 0; k < rows_.bordered.size(); ++k)
+    border[at(rows_.bordered[k])] = static_cast<Index>(k);
   std::vector<bool> dual(at(system_.rows()), false);
-  for (const Index r : rows.dual) dual[at(r)] = true;
+  for (const Index r : rows_.dual) dual[at(r)] = true;
   const auto entries = system_.compliance();
   for (std::size_t k = 0; k < entries.size(); ++k) {
     const ComplianceEntry& e = entries[k];
-    if (border[at(e.row)] >= 0) rows.border_compliance.push_back({k, border[at(e.row)], border[at(e.col)]});
-    if (dual[at(e.row)]) rows.dual_compliance.push_back(k);
+    if (border[at(e.row)] >= 0) rows_.border_compliance.push_back({k, border[at(e.row)], border[at(e.col)]});
+    if (dual[at(e.row)]) rows_.dual_compliance.push_back(k);
   }
 }
 
 std::vector<Index>& RowTreatments::list_of(RowTreatment treatment) {
   switch (treatment) {
     case RowTreatment::condensed:
-      return system_.treated_.condensed.row;
+      return rows_.condensed.row;
     case RowTreatment::bordered:
-      return system_.treated_.bordered;
+      return rows_.bordered;
     case RowTreatment::dual:
     case RowTreatment::augmented:
-      return system_.treated_.dual;
+      return rows_.dual;
     case RowTreatment::automatic:
     case RowTreatment::saddle:
       break;
   }
-  return system_.treated_.kept;
+  return rows_.kept;
 }
 
 Result<void> RowTreatments::check_condensed(const RowPool& pool, const std::string& who) {

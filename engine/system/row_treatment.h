@@ -10,10 +10,10 @@ inline constexpr Index most_bordered_rows = 64;      // of a scene: each costs a
 
 class RowTreatments {
  public:
-  explicit RowTreatments(System& system) : system_(system) {}
+  // `system`: whose compliance and Jacobian places are known; `rows`: to be filled.
+  RowTreatments(const System& system, TreatedRows& rows) : system_(system), rows_(rows) {}
 
-  // Fills the lists of rows of the system, whose compliance and Jacobian places are known. Fails with a
-  // message where a pool asks for a treatment that does not fit its rows.
+  // Fails with a message where a pool asks for a treatment that does not fit its rows.
   Result<void> sort();
 
  private:
@@ -27,7 +27,8 @@ class RowTreatments {
   std::vector<Index>& list_of(RowTreatment treatment);
   static Result<void> check_condensed(const RowPool& pool, const std::string& who);
 
-  System& system_;
+  const System& system_;
+  TreatedRows& rows_;
 };
 
 }  // namespace isochor

@@ -5,6 +5,7 @@
 
 #include "engine/solvers/ordering.h"
 #include "engine/system/row_treatment.h"
+#include "engine/system/structure.h"
 
 namespace isochor {
 
@@ -69,12 +70,35 @@ void gather_by_key(std::vector<Contribution>& c, bool weighted, Gather& gather,
 
 class SystemCompiler {
  public:
-  explicit SystemCompiler(SystemParts parts) : s_(std::make_shared<System>()) {
+  explicit SystemCompiler(SystemParts parts)
+      : s_(std::make_shared<System>()), t_(std::make_shared<SystemTables>()) {
     s_->parts_ = std::move(parts);
     s_->facets_ = SystemFacets(s_->parts_.stencil_pools, s_->parts_.row_pools);
+    s_->tables_ = t_;
   }
 
-  Result<std::shared_ptr<const System>> run() {
+  // With the tables of a system of the same structure; false: its structure is another.
+  bool take_tables(const System& like) {
+    if (!same_structure(s_->parts_, like.parts_) || s_->facets_.coupled != like.facets_.coupled) return false;
+    s_->tables_ = like.tables_;
+    // Numbers have a say in how rows are treated.
+    TreatedRows treated;
+    number_rows();
+    collect_compliance();
+    collect_bounds();
+    if (!RowTreatments(*s_, treated).sort() || !same_treatment(treated, like.treated())) {
+      s_->row_data_ = {};
+      s_->tables_ = t_;
+      return false;
+    }
+    if (like.parts_.ordering_base) s_->parts_.ordering_base = like.parts_.ordering_base;
+    measure();
+    place_mass();
+    return true;
+  }
+  std::shared_ptr<System> system() const { return s_; }
+
+  Result<std::shared_ptr<System>> run() {
     measure();
     place_pools();
     number_rows();
@@ -82,16 +106,17 @@ class SystemCompiler {
     gather_rows();
     gather_residual();
     gather_blocks();
+    place_mass();
     gather_jacobian();
     collect_compliance();
     collect_bounds();
-    if (auto r = RowTreatments(*s_).sort(); !r) return Error{r.error()};
+    if (auto r = RowTreatments(*s_, t_->treated).sort(); !r) return Error{r.error()};
     build_kkt();
     locate_entries();
     group_unknowns();
     find_ordering_base();
     hash_layout();
-    return std::shared_ptr<const System>(s_);
+    return s_;
   }
 
  private:
@@ -112,7 +137,7 @@ class SystemCompiler {
   void place_pools() {
     PoolPlace at_place;
     for (const auto& pool : s_->parts_.stencil_pools) {
-      s_->pools_.slots.push_back(at_place);
+      t_->pools.slots.push_back(at_place);
       const std::int64_t slots = static_cast<std::int64_t>(pool->nodes().item.size());
       at_place.energy += pool->stencils();
       at_place.function += static_cast<std::int64_t>(pool->stencils()) * pool->functions();
@@ -120,7 +145,7 @@ class SystemCompiler {
       at_place.jacobian += slots * pool->functions();
       if (pool->has_hessian()) at_place.hessian += pool->hessian_offset().back();
     }
-    s_->pools_.total = at_place;
+    t_->pools.total = at_place;
   }
 
   void number_rows() {
@@ -137,22 +162,21 @@ class SystemCompiler {
 
   Result<void> number_unknowns() {
     const Index n = s_->nodes();
-    s_->unknowns_.basis_of.assign(at(n), -1);
+    t_->unknowns.basis_of.assign(at(n), -1);
     for (const auto& p : s_->parts_.prescribers) {
       for (const PrescribedNode& c : p->nodes) {
-        if (s_->unknowns_.basis_of[at(c.node)] >= 0) {
+        if (t_->unknowns.basis_of[at(c.node)] >= 0) {
           return Error{std::string(p->name()) + ": node " + std::to_string(c.node) +
                        " is given by two prescribers of one scene; merge them first"};
         }
-        s_->unknowns_.basis_of[at(c.node)] = static_cast<Index>(s_->unknowns_.bases.size());
-        s_->unknowns_.bases.push_back(free_basis(c));
+        t_->unknowns.basis_of[at(c.node)] = static_cast<Index>(t_->unknowns.bases.size());
+        t_->unknowns.bases.push_back(free_basis(c));
       }
     }
-    s_->unknowns_.first.assign(1, 0);
+    t_->unknowns.first.assign(1, 0);
     for (Index i = 0; i < n; ++i) {
-      const Index b = s_->unknowns_.basis_of[at(i)];
-      s_->unknowns_.first.push_back(s_->unknowns_.first.back() +
-                                    (b < 0 ? 3 : s_->unknowns_.bases[at(b)].count));
+      const Index b = t_->unknowns.basis_of[at(i)];
+      t_->unknowns.first.push_back(t_->unknowns.first.back() + (b < 0 ? 3 : t_->unknowns.bases[at(b)].count));
     }
     return {};
   }
@@ -201,7 +225,7 @@ class SystemCompiler {
     std::vector<Contribution> to_row, to_function;
     for (std::size_t p = 0; p < s_->parts_.row_pools.size(); ++p) {
       const RowPool& pool = *s_->parts_.row_pools[p];
-      const std::int64_t base = s_->pools_.slots[at(pool.stencil_pool)].function;
+      const std::int64_t base = t_->pools.slots[at(pool.stencil_pool)].function;
       for (Index r = 0; r < pool.rows(); ++r) {
         for (Index k = pool.map.offset[at(r)]; k < pool.map.offset[at(r) + 1]; ++k) {
           const std::int64_t f = base + pool.map.item[at(k)];
@@ -211,8 +235,8 @@ class SystemCompiler {
         }
       }
     }
-    fill_gather(to_row, s_->row_data_.compliant + s_->row_data_.prescribed, s_->gathers_.row);
-    fill_gather(to_function, s_->pools_.total.function, s_->gathers_.function);
+    fill_gather(to_row, s_->row_data_.compliant + s_->row_data_.prescribed, t_->gathers.row);
+    fill_gather(to_function, t_->pools.total.function, t_->gathers.function);
   }
 
   // Gather lists for destinations 0..count-1, the key being the destination.
@@ -234,11 +258,11 @@ class SystemCompiler {
       const auto& item = s_->parts_.stencil_pools[p]->nodes().item;
       for (std::size_t k = 0; k < item.size(); ++k) {
         c.push_back({static_cast<std::uint64_t>(item[k]),
-                     s_->pools_.slots[p].gradient + static_cast<std::int64_t>(k), 1});
+                     t_->pools.slots[p].gradient + static_cast<std::int64_t>(k), 1});
       }
     }
-    fill_gather(c, s_->nodes(), s_->gathers_.residual);
-    s_->gathers_.residual.weight.clear();
+    fill_gather(c, s_->nodes(), t_->gathers.residual);
+    t_->gathers.residual.weight.clear();
   }
 
   void gather_blocks() {
@@ -248,7 +272,7 @@ class SystemCompiler {
       if (!pool.has_hessian()) continue;
       for (Index s = 0; s < pool.stencils(); ++s) {
         const auto nodes = pool.nodes()[s];
-        std::int64_t slot = s_->pools_.slots[p].hessian + pool.hessian_offset()[at(s)];
+        std::int64_t slot = t_->pools.slots[p].hessian + pool.hessian_offset()[at(s)];
         for (std::size_t a = 0; a < nodes.size(); ++a) {
           for (std::size_t b = 0; b <= a; ++b, ++slot) {
             // The destination is the lower triangle; a block met the other way round is marked by complement.
@@ -266,13 +290,12 @@ class SystemCompiler {
     for (const auto& e : c) {
       if ((e.key >> 32) == (e.key & 0xffffffffu)) has_diagonal[e.key & 0xffffffffu] = true;
     }
-    gather_by_key(c, false, s_->gathers_.block, s_->gathers_.block_ends);
+    gather_by_key(c, false, t_->gathers.block, t_->gathers.block_ends);
     for (Index i = 0; i < s_->nodes(); ++i) {
       if (has_diagonal[at(i)]) continue;
-      s_->gathers_.block_ends.push_back({i, i});
-      s_->gathers_.block.offset.push_back(s_->gathers_.block.offset.back());
+      t_->gathers.block_ends.push_back({i, i});
+      t_->gathers.block.offset.push_back(t_->gathers.block.offset.back());
     }
-    place_mass();
   }
 
   // The stencils of a solid couple every pair of nodes that share a cell, so each entry has its block.
@@ -280,14 +303,14 @@ class SystemCompiler {
     auto& entries = s_->parts_.mass_entries;
     if (entries.empty()) return;
     std::vector<std::pair<std::uint64_t, std::size_t>> blocks;
-    for (std::size_t d = 0; d < s_->gathers_.block_ends.size(); ++d)
-      blocks.push_back({key_of(s_->gathers_.block_ends[d][0], s_->gathers_.block_ends[d][1]), d});
+    for (std::size_t d = 0; d < s_->gathers().block_ends.size(); ++d)
+      blocks.push_back({key_of(s_->gathers().block_ends[d][0], s_->gathers().block_ends[d][1]), d});
     std::sort(blocks.begin(), blocks.end());
-    s_->gathers_.block_mass.assign(s_->gathers_.block_ends.size(), 0);
+    s_->block_mass_.assign(s_->gathers().block_ends.size(), 0);
     for (const MassEntry& e : entries) {
       const auto found =
           std::lower_bound(blocks.begin(), blocks.end(), std::pair(key_of(e.row, e.col), std::size_t{0}));
-      s_->gathers_.block_mass[found->second] += e.value;
+      s_->block_mass_[found->second] += e.value;
     }
   }
 
@@ -297,7 +320,7 @@ class SystemCompiler {
       const RowPool& rows = *s_->parts_.row_pools[p];
       if (rows.law != RowLaw::compliant) continue;
       const StencilPool& pool = *s_->parts_.stencil_pools[at(rows.stencil_pool)];
-      const PoolPlace& place = s_->pools_.slots[at(rows.stencil_pool)];
+      const PoolPlace& place = t_->pools.slots[at(rows.stencil_pool)];
       const Index functions = pool.functions();
       for (Index r = 0; r < rows.rows(); ++r) {
         for (Index k = rows.map.offset[at(r)]; k < rows.map.offset[at(r) + 1]; ++k) {
@@ -313,10 +336,10 @@ class SystemCompiler {
         }
       }
     }
-    gather_by_key(c, true, s_->gathers_.jacobian, s_->gathers_.jacobian_ends);
-    auto& begin = s_->gathers_.row_begin;
+    gather_by_key(c, true, t_->gathers.jacobian, t_->gathers.jacobian_ends);
+    auto& begin = t_->gathers.row_begin;
     begin.assign(at(s_->row_data_.compliant) + 1, 0);
-    for (const auto& [row, node] : s_->gathers_.jacobian_ends) ++begin[at(row) + 1];
+    for (const auto& [row, node] : t_->gathers.jacobian_ends) ++begin[at(row) + 1];
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
   }
 
@@ -359,8 +382,8 @@ class SystemCompiler {
       std::fill_n(size.begin() + first, count, 1.0);
     }
     std::vector<std::uint8_t> acts(at(s_->row_data_.compliant), 0);
-    for (const auto& [row, node] : s_->gathers_.jacobian_ends) {
-      if (s_->unknowns_.first[at(node) + 1] > s_->unknowns_.first[at(node)]) acts[at(row)] = 1;
+    for (const auto& [row, node] : s_->gathers().jacobian_ends) {
+      if (s_->unknowns().first[at(node) + 1] > s_->unknowns().first[at(node)]) acts[at(row)] = 1;
     }
     for (Index r = 0; r < s_->row_data_.compliant; ++r) {
       if (acts[at(r)] || size[at(r)] > 0) continue;
@@ -388,12 +411,12 @@ class SystemCompiler {
   // Unknowns ascend with nodes and then with rows, so columns come out sorted without a look at their
   // entries.
   void build_kkt() {
-    const auto& unknown = s_->treated_.unknown;
+    const auto& unknown = t_->treated.unknown;
     std::vector<std::uint64_t> blocks, row_entries, compliance_entries;  // keys: column, row
-    for (const auto& [i, j] : s_->gathers_.block_ends) blocks.push_back(key_of(j, i));
-    for (const FilledRows* rows : {&s_->treated_.condensed, &s_->treated_.augmented})
+    for (const auto& [i, j] : t_->gathers.block_ends) blocks.push_back(key_of(j, i));
+    for (const FilledRows* rows : {&t_->treated.condensed, &t_->treated.augmented})
       for_filled_blocks(*rows, [&](Index i, Index j) { blocks.push_back(key_of(j, i)); });
-    for (const auto& [row, node] : s_->gathers_.jacobian_ends) {
+    for (const auto& [row, node] : t_->gathers.jacobian_ends) {
       if (unknown[at(row)] >= 0) row_entries.push_back(key_of(node, unknown[at(row)]));
     }
     for (const ComplianceEntry& e : s_->row_data_.compliance) {
@@ -404,9 +427,9 @@ class SystemCompiler {
       sort_by_destination(*keys);
       keys->erase(std::unique(keys->begin(), keys->end()), keys->end());
     }
-    SymmetricPattern& kkt = s_->matrix_.pattern;
-    const auto& first = s_->unknowns_.first;
-    kkt.size = s_->free_unknowns() + static_cast<Index>(s_->treated_.kept.size());
+    SymmetricPattern& kkt = t_->matrix.pattern;
+    const auto& first = t_->unknowns.first;
+    kkt.size = s_->free_unknowns() + static_cast<Index>(t_->treated.kept.size());
     kkt.row.reserve(9 * blocks.size() + 3 * row_entries.size() + compliance_entries.size());
     kkt.column_start = {0};
     const auto end_of = [](const std::vector<std::uint64_t>& keys, std::size_t from, Index column) {
@@ -443,30 +466,30 @@ class SystemCompiler {
   template <class Visit>
   void for_filled_blocks(const FilledRows& rows, Visit visit) const {
     for (const Index row : rows.row) {
-      const auto begin = s_->gathers_.row_begin[at(row)], end = s_->gathers_.row_begin[at(row) + 1];
+      const auto begin = t_->gathers.row_begin[at(row)], end = t_->gathers.row_begin[at(row) + 1];
       for (auto a = begin; a < end; ++a) {
         for (auto b = begin; b <= a; ++b)
-          visit(s_->gathers_.jacobian_ends[a][1], s_->gathers_.jacobian_ends[b][1]);
+          visit(t_->gathers.jacobian_ends[a][1], t_->gathers.jacobian_ends[b][1]);
       }
     }
   }
 
   std::int64_t place(Index row, Index col) const {
-    const auto& kkt = s_->matrix_.pattern;
+    const auto& kkt = t_->matrix.pattern;
     const auto begin = kkt.row.begin() + kkt.column_start[at(col)];
     const auto end = kkt.row.begin() + kkt.column_start[at(col) + 1];
     return std::lower_bound(begin, end, row) - kkt.row.begin();
   }
 
   void locate_entries() {
-    const auto& first = s_->unknowns_.first;
+    const auto& first = t_->unknowns.first;
     const auto locate = [&](std::vector<std::int64_t>& places, Index row_or_node, Index node, bool is_row) {
       for (Index k = 0; k < 3; ++k) {
         const Index c = first[at(node)] + k;
         if (c >= first[at(node) + 1]) {
           places.push_back(-1);
         } else if (is_row) {
-          const Index u = s_->treated_.unknown[at(row_or_node)];
+          const Index u = t_->treated.unknown[at(row_or_node)];
           places.push_back(u < 0 ? -1 : place(u, c));
         } else if (row_or_node == node) {
           places.push_back(place(c, c));
@@ -476,13 +499,13 @@ class SystemCompiler {
         }
       }
     };
-    for (const auto& [i, j] : s_->gathers_.block_ends) locate(s_->matrix_.block, i, j, false);
-    for (const auto& [row, node] : s_->gathers_.jacobian_ends) locate(s_->matrix_.jacobian, row, node, true);
+    for (const auto& [i, j] : t_->gathers.block_ends) locate(t_->matrix.block, i, j, false);
+    for (const auto& [row, node] : t_->gathers.jacobian_ends) locate(t_->matrix.jacobian, row, node, true);
     for (const ComplianceEntry& e : s_->row_data_.compliance) {
-      const Index row = s_->treated_.unknown[at(e.row)], col = s_->treated_.unknown[at(e.col)];
-      s_->matrix_.compliance.push_back(row < 0 ? -1 : place(row, col));
+      const Index row = t_->treated.unknown[at(e.row)], col = t_->treated.unknown[at(e.col)];
+      t_->matrix.compliance.push_back(row < 0 ? -1 : place(row, col));
     }
-    for (FilledRows* rows : {&s_->treated_.condensed, &s_->treated_.augmented}) {
+    for (FilledRows* rows : {&t_->treated.condensed, &t_->treated.augmented}) {
       for_filled_blocks(*rows, [&](Index i, Index j) {
         for (Index c = first[at(j)]; c < first[at(j) + 1]; ++c) {
           const Index from = i == j ? c : first[at(i)];
@@ -490,19 +513,19 @@ class SystemCompiler {
         }
       });
     }
-    for (Index i = 0; i < s_->matrix_.pattern.size; ++i)
-      s_->matrix_.diagonal.push_back(s_->matrix_.pattern.column_start[at(i)]);
+    for (Index i = 0; i < t_->matrix.pattern.size; ++i)
+      t_->matrix.diagonal.push_back(t_->matrix.pattern.column_start[at(i)]);
   }
 
   // The unknowns of a node share a group; a local row joins the node that most of its stencils have in
   // common, so that the ordering sees one vertex a node. Rows over large parts of a body stay apart.
   void group_unknowns() {
-    SymmetricPattern& kkt = s_->matrix_.pattern;
+    SymmetricPattern& kkt = t_->matrix.pattern;
     kkt.group.assign(at(kkt.size), -1);
     Index groups = 0;
     std::vector<Index> group_of_node(at(s_->nodes()), -1);
     for (Index i = 0; i < s_->nodes(); ++i) {
-      for (Index c = s_->unknowns_.first[at(i)]; c < s_->unknowns_.first[at(i) + 1]; ++c) {
+      for (Index c = t_->unknowns.first[at(i)]; c < t_->unknowns.first[at(i) + 1]; ++c) {
         if (group_of_node[at(i)] < 0) group_of_node[at(i)] = groups++;
         kkt.group[at(c)] = group_of_node[at(i)];
       }
@@ -511,15 +534,15 @@ class SystemCompiler {
     std::size_t e = 0;
     for (Index r = 0; r < s_->row_data_.compliant; ++r) {
       const std::size_t begin = e;
-      while (e < s_->gathers_.jacobian_ends.size() && s_->gathers_.jacobian_ends[e][0] == r) ++e;
-      if (s_->treated_.unknown[at(r)] < 0) continue;
+      while (e < t_->gathers.jacobian_ends.size() && t_->gathers.jacobian_ends[e][0] == r) ++e;
+      if (t_->treated.unknown[at(r)] < 0) continue;
       Index best = -1;
       std::int64_t best_count = 0;
       if (e - begin <= local_row_nodes) {
         for (std::size_t k = begin; k < e; ++k) {
-          const Index g = group_of_node[at(s_->gathers_.jacobian_ends[k][1])];
+          const Index g = group_of_node[at(t_->gathers.jacobian_ends[k][1])];
           if (g < 0) continue;
-          const std::int64_t count = s_->gathers_.jacobian.offset[k + 1] - s_->gathers_.jacobian.offset[k];
+          const std::int64_t count = t_->gathers.jacobian.offset[k + 1] - t_->gathers.jacobian.offset[k];
           if (best < 0 || count > best_count || (count == best_count && rows_in[at(g)] < rows_in[at(best)])) {
             best = g;
             best_count = count;
@@ -531,7 +554,7 @@ class SystemCompiler {
         rows_in.push_back(0);
       }
       ++rows_in[at(best)];
-      kkt.group[at(s_->treated_.unknown[at(r)])] = best;
+      kkt.group[at(t_->treated.unknown[at(r)])] = best;
     }
     kkt.groups = groups;
   }
@@ -540,22 +563,23 @@ class SystemCompiler {
     if (!s_->renews_stencils()) return;
     if (!s_->parts_.ordering_base) {
       s_->parts_.ordering_base = std::make_shared<OrderingBase>();
-      s_->parts_.ordering_base->pattern = s_->matrix_.pattern;
+      s_->parts_.ordering_base->pattern = t_->matrix.pattern;
     }
-    s_->matrix_.pattern.base = s_->parts_.ordering_base;
+    t_->matrix.pattern.base = s_->parts_.ordering_base;
   }
 
   void hash_layout() {
     Hash h;
-    h.add(std::span<const Index>(s_->matrix_.pattern.row));
-    h.add(std::span<const std::int64_t>(s_->matrix_.pattern.column_start));
+    h.add(std::span<const Index>(t_->matrix.pattern.row));
+    h.add(std::span<const std::int64_t>(t_->matrix.pattern.column_start));
     h.add(static_cast<std::uint64_t>(s_->nodes()));
     h.add(static_cast<std::uint64_t>(s_->row_data_.compliant));
     h.add(static_cast<std::uint64_t>(s_->row_data_.prescribed));
-    s_->layout_ = h.value();
+    t_->layout = h.value();
   }
 
   std::shared_ptr<System> s_;
+  std::shared_ptr<SystemTables> t_;
 };
 
 double System::evaluate_law(const LawPlace& place, double t0, double t1, std::span<const double> memory,
@@ -572,8 +596,10 @@ void System::start_memory(std::span<double> memory) const {
   for (const auto& rows : facets_.remembering_rows) rows.facet->start(rows.in(memory));
 }
 
-Result<std::shared_ptr<const System>> System::compile(SystemParts parts) {
-  return SystemCompiler(std::move(parts)).run();
+Result<std::shared_ptr<System>> System::compile(SystemParts parts, const System* like) {
+  SystemCompiler compiler(std::move(parts));
+  if (like && compiler.take_tables(*like)) return compiler.system();
+  return compiler.run();
 }
 
 }  // namespace isochor

@@ -2,12 +2,13 @@
 //
 // It is made of parts, each a plain struct that compile() fills and nothing changes afterwards:
 //
-//   NodeUnknowns   which unknowns nodes have
+//   SystemTables   what follows from who is where, whatever the numbers; systems of one structure share them
+//     NodeUnknowns   which unknowns nodes have
+//     Gathers        what adds up to rows, functions, residuals, blocks of the stiffness and Jacobian vectors
+//     TreatedRows    which rows the linear systems keep, condense, border or leave to a dual iteration
+//     MatrixPlaces   the pattern of the saddle-point matrix, and where everything goes in it
+//     PoolPlaces     where pools have their slots
 //   RowData        compliant rows: metric, measure, bounds, compliance, laws
-//   Gathers        what adds up to rows, functions, residuals, blocks of the stiffness and Jacobian vectors
-//   TreatedRows    which rows the linear systems keep, condense, border or leave to a dual iteration
-//   MatrixPlaces   the pattern of the saddle-point matrix, and where everything goes in it
-//   PoolPlaces     where pools have their slots
 //   SystemFacets   what few pools are, and what pools keep between steps
 #pragma once
 
@@ -91,13 +92,12 @@ struct Gather {
 
 // Rows of all compliant pools, then of all prescribed ones, share one numbering here.
 struct Gathers {
-  Gather row;                                    // row <- function slots
-  Gather function;                               // function <- rows
-  Gather residual;                               // node <- gradient slots
-  Gather block;                                  // node pair <- Hessian slots, ~s: transposed
-  Gather jacobian;                               // (row, node) <- Jacobian slots
-  std::vector<std::array<Index, 2>> block_ends;  // the larger node of a pair first
-  std::vector<double> block_mass;  // beside the lumped one [kg], one a block; empty when the mass is lumped
+  Gather row;                                       // row <- function slots
+  Gather function;                                  // function <- rows
+  Gather residual;                                  // node <- gradient slots
+  Gather block;                                     // node pair <- Hessian slots, ~s: transposed
+  Gather jacobian;                                  // (row, node) <- Jacobian slots
+  std::vector<std::array<Index, 2>> block_ends;     // the larger node of a pair first
   std::vector<std::array<Index, 2>> jacobian_ends;  // row, node; by rows
   std::vector<std::size_t> row_begin;  // jacobian_ends of compliant row r begin at [r], end at [r + 1]
 };
@@ -149,30 +149,41 @@ struct PoolPlaces {
   PoolPlace total;
 };
 
+struct SystemTables {
+  NodeUnknowns unknowns;
+  Gathers gathers;
+  TreatedRows treated;
+  MatrixPlaces matrix;
+  PoolPlaces pools;
+  std::uint64_t layout = 0;  // a number for all of it
+};
+
 class System {
  public:
-  // Builds patterns and gather lists. Fails with a message when parts contradict each other.
-  static Result<std::shared_ptr<const System>> compile(SystemParts parts);
+  // Builds patterns and gather lists, or takes those of `like` where the parts have the same structure. Fails
+  // with a message when parts contradict each other.
+  static Result<std::shared_ptr<System>> compile(SystemParts parts, const System* like = nullptr);
 
   const SystemParts& parts() const { return parts_; }
-  const NodeUnknowns& unknowns() const { return unknowns_; }
+  const NodeUnknowns& unknowns() const { return tables_->unknowns; }
   const RowData& row_data() const { return row_data_; }
-  const Gathers& gathers() const { return gathers_; }
-  const TreatedRows& treated() const { return treated_; }
-  const MatrixPlaces& matrix() const { return matrix_; }
-  const PoolPlaces& pools() const { return pools_; }
+  const Gathers& gathers() const { return tables_->gathers; }
+  const TreatedRows& treated() const { return tables_->treated; }
+  const MatrixPlaces& matrix() const { return tables_->matrix; }
+  const PoolPlaces& pools() const { return tables_->pools; }
   const SystemFacets& facets() const { return facets_; }
+  bool shares_tables(const System& other) const { return tables_ == other.tables_; }
 
-  std::uint64_t layout() const { return layout_; }
+  std::uint64_t layout() const { return tables_->layout; }
   double length() const { return length_; }  // diagonal of the rest bounding box [m]
 
   // What is asked of the parts most often.
   Index nodes() const { return static_cast<Index>(parts_.rest.size()); }
-  Index free_unknowns() const { return unknowns_.first.back(); }
+  Index free_unknowns() const { return unknowns().first.back(); }
   Index rows() const { return row_data_.compliant; }
   Index prescribed_rows() const { return row_data_.prescribed; }
   Index first_row(Index row_pool) const { return row_data_.first[at(row_pool)]; }
-  const SymmetricPattern& kkt() const { return matrix_.pattern; }
+  const SymmetricPattern& kkt() const { return matrix().pattern; }
   bool has_bounds() const { return !row_data_.lower.empty(); }
   bool has_prescribers() const { return !parts_.prescribers.empty(); }
   std::span<const double> row_metric() const { return row_data_.metric; }
@@ -183,20 +194,21 @@ class System {
   std::span<const ComplianceEntry> compliance() const { return row_data_.compliance; }
   std::span<const LawPlace> laws() const { return row_data_.laws; }
   std::span<const Index> idle_rows() const { return row_data_.idle; }
-  std::span<const Index> first_unknown() const { return unknowns_.first; }
-  std::span<const Index> basis_of() const { return unknowns_.basis_of; }
-  std::span<const FreeBasis> free_bases() const { return unknowns_.bases; }
+  std::span<const Index> first_unknown() const { return unknowns().first; }
+  std::span<const Index> basis_of() const { return unknowns().basis_of; }
+  std::span<const FreeBasis> free_bases() const { return unknowns().bases; }
   bool has_lag() const { return !facets_.lagged.empty(); }
   bool couples() const { return facets_.coupled; }
   bool has_barrier() const { return !facets_.barriers.empty(); }
   bool renews_stencils() const { return !facets_.renewed.empty(); }
-  std::span<const Index> row_unknown() const { return treated_.unknown; }
-  std::span<const Index> kept_rows() const { return treated_.kept; }
-  std::span<const Index> condensed_rows() const { return treated_.condensed.row; }
-  std::span<const Index> bordered_rows() const { return treated_.bordered; }
-  std::span<const Index> dual_rows() const { return treated_.dual; }
-  std::span<const double> block_mass() const { return gathers_.block_mass; }
-  std::span<const std::array<Index, 2>> jacobian_ends() const { return gathers_.jacobian_ends; }
+  std::span<const Index> row_unknown() const { return treated().unknown; }
+  std::span<const Index> kept_rows() const { return treated().kept; }
+  std::span<const Index> condensed_rows() const { return treated().condensed.row; }
+  std::span<const Index> bordered_rows() const { return treated().bordered; }
+  std::span<const Index> dual_rows() const { return treated().dual; }
+  // What the mass matrix has beside the lumped masses [kg], one a block; empty when the mass is lumped.
+  std::span<const double> block_mass() const { return block_mass_; }
+  std::span<const std::array<Index, 2>> jacobian_ends() const { return gathers().jacobian_ends; }
 
   // Numbers that row and stencil pools keep between steps: all, and those of a pool among them.
   Index memory() const { return static_cast<Index>(facets_.memory); }
@@ -226,16 +238,11 @@ class System {
   }
 
   friend class SystemCompiler;
-  friend class RowTreatments;
   SystemParts parts_;
-  NodeUnknowns unknowns_;
+  std::shared_ptr<const SystemTables> tables_;
   RowData row_data_;
-  Gathers gathers_;
-  TreatedRows treated_;
-  MatrixPlaces matrix_;
-  PoolPlaces pools_;
   SystemFacets facets_;
-  std::uint64_t layout_ = 0;
+  std::vector<double> block_mass_;
   double length_ = 0;
 };
 

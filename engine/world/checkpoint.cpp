@@ -1,6 +1,7 @@
-// Saved states of a world. Version 2: magic, version and length in bytes; fingerprints of the parts of the
-// scene; time, positions, velocities, multipliers, what schemes and effects keep, amounts, reactions; a
-// checksum over all of it. A state is loaded whole or not at all.
+// Saved states of a world. Version 4: magic, version and length in bytes; fingerprints of the parts of the
+// scene; time, positions, velocities, multipliers, what schemes and effects keep, what a host has
+// set (amounts, gravity, poses, forces), reactions; a checksum over all of it. A state is loaded whole or not
+// at all.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -17,7 +18,7 @@ namespace {
 
 constexpr std::uint64_t kMagic = 0x6574617473736f69ull;       // "iosstate"
 constexpr std::uint64_t kFirstMagic = 0x31726f68636f7369ull;  // of version 1, without a checksum
-constexpr std::uint64_t kVersion = 3;
+constexpr std::uint64_t kVersion = 4;
 
 struct Header {
   std::uint64_t magic = kMagic, version = kVersion, bytes = 0;
@@ -32,15 +33,15 @@ struct Moment {
 struct Content {
   std::vector<ScenePart> scene;
   Moment now;
-  std::vector<double> amounts;
-  std::vector<Vec3> reactions;
+  std::vector<double> amounts;  // of effects and gravity, and poses, where a host has set them
+  std::vector<Vec3> reactions, forces;
   std::vector<Moment> settled;  // none, or the state in balance behind an unfinished one
 };
 
 Moment moment_of(const State& s) {
   return {s.t, s.x, s.v, s.lambda, s.extra};
 }
-State state_of(Moment&& m, const std::vector<Vec3>& reactions) {
+State state_of(Moment&& m, const std::vector<Vec3>& reactions, const std::vector<Vec3>& forces) {
   State s;
   s.t = m.t;
   s.x = std::move(m.x);
@@ -48,6 +49,7 @@ State state_of(Moment&& m, const std::vector<Vec3>& reactions) {
   s.lambda = std::move(m.lambda);
   s.extra = std::move(m.extra);
   s.reactions = reactions;
+  s.forces = forces;
   return s;
 }
 
@@ -164,8 +166,11 @@ Result<Content> read(std::span<const std::byte> bytes) {
 const std::vector<ScenePart>& World::Impl::scene_parts() {
   if (!described.empty()) return described;
   describe_options(options, described);
-  for (const BodyData& body : builder.bodies()) describe_body(body, described);
-  for (const EffectPtr& source : sources) {
+  for (const BodyData& body : said.builder.bodies()) {
+    if (body.present()) describe_body(body, described);
+  }
+  for (const Index e : said.order) {
+    const EffectPtr& source = said.sources[at(e)];
     described.push_back({"effect \"" + source->name() + "\"", Fingerprint().add(source).value()});
   }
   return described;
@@ -173,8 +178,8 @@ const std::vector<ScenePart>& World::Impl::scene_parts() {
 
 std::vector<std::byte> World::save() const {
   Impl& w = *impl_;
-  if (!w.compile()) return {};
-  Content content{w.scene_parts(), moment_of(w.state), {}, w.state.reactions, {}};
+  if (!w.ready()) return {};
+  Content content{w.scene_parts(), moment_of(w.state), {}, w.state.reactions, w.state.forces, {}};
   const std::optional<State>& settled = w.controller->settled();
   if (settled) content.settled.push_back(moment_of(*settled));
   w.amounts.save(content.amounts);
@@ -212,9 +217,12 @@ Result<void> World::load(std::span<const std::byte> bytes) {
     return Error{"load: the state was saved from another scene: of this world differ " + what +
                  "; load it into a world built the same way"};
   }
-  if (c.reactions.size() != w.state.reactions.size() || c.settled.size() > 1)
+  const bool forces = !c.forces.empty();
+  if (c.reactions.size() != w.state.reactions.size() || c.settled.size() > 1 ||
+      (forces && c.forces.size() != w.state.x.size()))
     return damaged("its sizes do not fit this scene");
-  if (!finite(c.reactions) || !finite(c.amounts)) return damaged("it holds numbers that are not finite");
+  if (!finite(c.reactions) || !finite(c.forces) || !finite(c.amounts))
+    return damaged("it holds numbers that are not finite");
   if (auto r = w.check_moment(c.now); !r) return r;
   if (!c.settled.empty()) {
     if (auto r = w.check_moment(c.settled.front()); !r) return r;
@@ -224,10 +232,10 @@ Result<void> World::load(std::span<const std::byte> bytes) {
       std::span<const double>(c.now.extra).first(w.layout.pools));
   if (!stencils) return damaged(stencils.error());
   w.amounts.load(c.amounts);
-  w.state = state_of(std::move(c.now), c.reactions);
+  w.take_over(state_of(std::move(c.now), c.reactions, c.forces));
   std::optional<State>& settled = w.controller->settled();
   settled.reset();
-  if (!c.settled.empty()) settled = state_of(std::move(c.settled.front()), c.reactions);
+  if (!c.settled.empty()) settled = state_of(std::move(c.settled.front()), c.reactions, c.forces);
   return {};
 }
 
@@ -235,16 +243,7 @@ std::uint64_t World::state_hash() const {
   const Impl& w = *impl_;
   Hash h;
   h.add(w.state.hash());
-  bool set = false;
-  for (const auto& instance : w.instances) {
-    const Amount* a = instance->amount();
-    if (!a || !a->set_by_host()) continue;
-    std::vector<double> numbers;
-    a->save(numbers);
-    h.add(std::span<const double>(numbers));
-    set = true;
-  }
-  return set ? h.value() : w.state.hash();
+  return w.amounts.add_set_by_host(h) ? h.value() : w.state.hash();
 }
 
 }  // namespace isochor

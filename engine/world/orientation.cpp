@@ -156,9 +156,9 @@ Error without_rotation(std::size_t nodes, const char* when) {
 Result<Orientation> World::orientation(const Selection& where) const {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return Error{r.error()};
-  const auto selected = w.builder.select(where, "orientation");
+  const auto selected = w.said.builder.select(where, "orientation");
   if (!selected) return Error{selected.error()};
-  const BodyData& body = w.builder.body(where.body);
+  const BodyData& body = w.said.builder.body(where.body);
   const auto rest = std::span<const Vec3>(body.mesh.nodes);
   const auto x = positions(where.body);
   const WeightedSet set = weighted_set(body, where, selected.value());

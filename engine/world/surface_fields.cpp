@@ -67,6 +67,7 @@ void add_surface_fields(std::span<const std::unique_ptr<EffectInstance>> effects
   std::vector<double> pressure, area;
   std::vector<Vec3> traction;
   for (const auto& effect : effects) {
+    if (!effect) continue;
     SurfaceForces f;
     if (!effect->surface_forces(context, f)) continue;
     const auto of_body = std::span<const double>(f.area).subspan(first, nodes);

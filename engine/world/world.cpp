@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <utility>
 
+#include "engine/base/stopwatch.h"
 #include "engine/base/text.h"
 #include "engine/step/step_report.h"
 #include "engine/step/time_scheme.h"
@@ -79,87 +81,130 @@ Result<World> World::create(WorldOptions options, Host host, std::uint64_t abi) 
   return World(std::make_unique<Impl>(std::move(options), std::move(parallel)));
 }
 
+Description& World::Impl::open_draft() {
+  if (!compiled()) return said;
+  if (!draft) draft = Description{said.builder.again(), said.places, said.sources, said.order};
+  return *draft;
+}
+
 Result<BodyId> World::add_body(BodyDef body) {
-  Impl& w = *impl_;
-  if (w.compiled()) return Error{"body \"" + body.name + "\": bodies are added before the first step"};
-  if (auto r = w.builder.add_body(body); !r) return Error{r.error()};
-  return WorldNumbers::make<BodyTag>(w.builder.body_count() - 1, w.builder.world());
+  Builder& builder = impl_->open_draft().builder;
+  auto place = builder.add_body(body);
+  if (!place) return Error{place.error()};
+  return WorldNumbers::make<BodyTag>(place.value(), builder.world(),
+                                     builder.body_slots().generation(place.value()));
 }
 
 Result<EffectId> World::add(EffectPtr effect) {
-  Impl& w = *impl_;
   if (!effect) return Error{"world: an empty effect was added"};
-  if (w.compiled())
-    return Error{"effect \"" + effect->name() + "\": effects are added before the first step"};
   if (auto r = effect->check(); !r) return Error{r.error()};
-  w.sources.push_back(std::move(effect));
-  return WorldNumbers::make<EffectTag>(static_cast<Index>(w.sources.size()) - 1, w.builder.world());
+  Description& d = impl_->open_draft();
+  const Index place = d.places.take();
+  d.sources.resize(at(d.places.size()));
+  d.sources[at(place)] = std::move(effect);
+  d.order.push_back(place);
+  return WorldNumbers::make<EffectTag>(place, d.builder.world(), d.places.generation(place));
 }
 
 namespace {
 
-// The end of a sentence on an id that leads nowhere; empty where it leads to one of `count` things.
+// The end of a sentence on an id that leads nowhere; empty where it leads to something.
 template <class What>
-std::string no_such(const Id<What>& id, const std::string& thing, Index count, const Builder& builder) {
-  return why_not(WorldNumbers::look_up(id, count, builder.world()), thing, id.number(), count);
+std::string no_such(const Id<What>& id, const std::string& thing, const Slots& places,
+                    const Builder& builder) {
+  return why_not(WorldNumbers::look_up(id, places, builder.world()), thing, id.number(), places.taken());
 }
 
 }  // namespace
 
 Result<void> World::check(BodyId body) const {
-  const std::string why = no_such(body, "body", impl_->builder.body_count(), impl_->builder);
+  const Builder& builder = impl_->latest().builder;
+  const std::string why = no_such(body, "body", builder.body_slots(), builder);
   if (why.empty()) return {};
   return Error{why};
 }
 
 Result<void> World::check(EffectId effect) const {
-  const std::string why =
-      no_such(effect, "effect", static_cast<Index>(impl_->sources.size()), impl_->builder);
+  const Description& d = impl_->latest();
+  const std::string why = no_such(effect, "effect", d.places, d.builder);
   if (why.empty()) return {};
   return Error{why};
 }
 
-const BodyData* World::Impl::find_body(BodyId body, const char* call) const {
-  const std::string why = no_such(body, "body", builder.body_count(), builder);
-  if (why.empty()) return &builder.body(body);
+const BodyData* World::Impl::find_body(BodyId body, const char* call) {
+  if (draft) (void)ready();
+  const std::string why = no_such(body, "body", said.builder.body_slots(), said.builder);
+  if (why.empty()) return &said.builder.body(body);
   if (options.log) options.log(std::string(call) + ": " + why);
   return nullptr;
 }
 
 Result<void> World::Impl::compile() {
-  if (compiled()) return {};
-  if (controller) return Error{"world: memory ran out when stencils were replaced; make the world anew"};
-  if (!compile_error.empty()) return Error{compile_error};
-  const auto result = compile_once();
-  for (const std::string& warning : builder.warnings()) {
-    if (options.log) options.log(warning);
+  if (!compile_error.empty()) {
+    // Of a first attempt the reason stays. What a change failed for is told once: it was taken back.
+    if (!compiled()) return Error{compile_error};
+    return Error{std::exchange(compile_error, {})};
   }
-  if (result) return {};
+  if (compiled() && !draft) return {};
+  if (controller && !compiled())
+    return Error{"world: memory ran out when stencils were replaced; make the world anew"};
+  const std::vector<std::string> told = compiled() ? said.builder.warnings() : std::vector<std::string>();
+  const auto result = compiled() ? renew() : compile_first();
+  for (const std::string& warning : said.builder.warnings()) {
+    const bool known = std::find(told.begin(), told.end(), warning) != told.end();
+    if (options.log && !known) options.log(warning);
+  }
+  if (result || compiled()) return result;
   // A builder is used up by a failed attempt; the reason stays. Wrong units make supports miss their nodes
   // and probes their cells, so whoever did not hear of them does so here.
-  compile_error = result.error() + (options.log ? "" : builder.doubtful_units());
+  compile_error = result.error() + (options.log ? "" : said.builder.doubtful_units());
   return Error{compile_error};
 }
 
-Result<void> World::Impl::compile_once() {
+bool World::Impl::ready() {
+  if (compiled() && !draft) return true;
+  if (auto r = compile(); !r && compiled()) {
+    if (options.log) options.log(r.error());
+    compile_error = r.error();
+  }
+  return compiled();
+}
+
+Result<BuiltParts> build_parts(Description& said, const WorldOptions& options) {
+  Builder& builder = said.builder;
+  BuiltParts built;
   builder.set_quasi_static(!options.scheme->has_inertia());
-  for (const EffectPtr& e : sources) {
-    if (auto r = e->declare(builder); !r) return r;
+  for (const Index e : said.order) {
+    if (auto r = said.sources[at(e)]->declare(builder); !r) return Error{r.error()};
   }
   if (options.consistent_mass && options.scheme->has_inertia()) builder.use_consistent_mass();
-  if (auto r = builder.build_solids(); !r) return r;
-  for (std::size_t e = 0; e < sources.size(); ++e) {
-    builder.set_owner(static_cast<Index>(e));
-    auto instance = sources[e]->build(builder);
+  if (auto r = builder.build_solids(); !r) return Error{r.error()};
+  built.instances.resize(said.sources.size());
+  for (const Index e : said.order) {
+    builder.set_owner(e);
+    auto instance = said.sources[at(e)]->build(builder);
     if (!instance) return Error{instance.error()};
-    instances.push_back(std::move(instance).value());
+    built.instances[at(e)] = std::move(instance).value();
   }
-  held_by = builder.held_directions(sources.size());
+  builder.set_owner(-1);
+  built.held_by = builder.held_directions(said.sources.size());
   auto parts = builder.finish(!options.scheme->has_inertia());
   if (!parts) return Error{parts.error()};
-  if (auto r = methods.choose(std::move(parts).value()); !r) return r;
+  built.parts = std::move(parts).value();
+  return built;
+}
+
+Result<void> World::Impl::compile_first() {
+  const Stopwatch watch(compile_report.seconds);
+  auto built = build_parts(said, options);
+  if (!built) return Error{built.error()};
+  instances = std::move(built.value().instances);
+  held_by = std::move(built.value().held_by);
+  if (auto r = methods.choose(std::move(built.value().parts)); !r) return r;
   tell_idle_rows();
+  if (system().renews_stencils()) first_stencils = system().parts().stencil_pools;
   begin_state();
+  compile_report.work = CompileWork::structure;
   return {};
 }
 
@@ -179,24 +224,26 @@ void World::Impl::tell_idle_rows() {
   }
   for (const auto& [name, counts] : of_pool) {
     if (counts.first == 0) continue;
-    builder.warn("\"" + name + "\": " + std::to_string(counts.first) + " of its " +
-                 std::to_string(counts.second) + (counts.first == 1 ? " rows has" : " rows have") +
-                 " no free coordinate, as supports hold all nodes that enter; what supports do there is not "
-                 "held against it");
-    if (options.log) options.log(builder.warnings().back());
+    said.builder.warn(
+        "\"" + name + "\": " + std::to_string(counts.first) + " of its " + std::to_string(counts.second) +
+        (counts.first == 1 ? " rows has" : " rows have") +
+        " no free coordinate, as supports hold all nodes that enter; what supports do there is not "
+        "held against it");
+    if (options.log) options.log(said.builder.warnings().back());
   }
 }
 
 // Gravity acts on the mass that inertia has: with a lumped mass, free fall stays rigid. Statics has no
 // inertia and takes the consistent distribution, which is more accurate for Tet10.
-std::vector<double> World::Impl::gravity_mass() const {
-  const SystemParts& parts = system().parts();
+std::vector<double> gravity_mass(const Builder& builder, const SystemParts& parts,
+                                 const WorldOptions& options) {
   std::vector<double> weight(parts.rest.size(), 0);
   const bool lumped = options.scheme->has_inertia() && !options.consistent_mass;
   // Points without a body have lumped mass always.
   if (options.scheme->has_inertia()) weight = parts.mass;
   for (const BodyData& body : builder.bodies()) {
     if (lumped) break;
+    if (!body.present()) continue;
     std::fill_n(weight.begin() + body.first_node, body.mesh.nodes.size(), 0.0);
     for (const RegionData& region : body.regions) {
       add_nodal_volume(*body.reference, parts.rest, body.global_cells, region.cells, region.density, weight);
@@ -205,23 +252,42 @@ std::vector<double> World::Impl::gravity_mass() const {
   return weight;
 }
 
+// Views of positions stay good where nodes are as many as before.
+void World::Impl::take_over(State&& next) {
+  const auto keep = [](std::vector<Vec3>& present, std::vector<Vec3>& list) {
+    if (present.size() != list.size()) return;
+    std::copy(list.begin(), list.end(), present.begin());
+    list.swap(present);
+  };
+  keep(state.x, next.x);
+  keep(state.v, next.v);
+  state = std::move(next);
+}
+
 // The state at rest, and who advances it.
 void World::Impl::begin_state() {
   const SystemParts& parts = system().parts();
   const std::size_t n = at(system().nodes());
-  state.x = parts.rest;
-  state.v.assign(n, Vec3{});
-  state.lambda.assign(at(system().rows()), 0.0);
-  state.reactions.assign(n, Vec3{});
+  State rest;
+  rest.x = parts.rest;
+  rest.v.assign(n, Vec3{});
+  rest.lambda.assign(at(system().rows()), 0.0);
+  rest.reactions.assign(n, Vec3{});
   layout.pools = at(system().memory());
-  layout.scheme = options.scheme->memory(n);
+  layout.scheme = options.scheme->memory().numbers(n);
   // Last increment's length and suggestion for the next, then velocities before it.
   layout.error = options.time_error > 0 && options.scheme->has_inertia() ? 2 + 3 * n : 0;
-  state.extra.assign(layout.size(), 0.0);
-  system().start_memory(std::span(state.extra).first(layout.pools));
-  data.emplace(system(), options, gravity_mass());
-  controller.emplace(StepContext{options, builder.bodies(), *parallel, methods, *data, state, layout},
-                     amounts, interrupt);
+  rest.extra.assign(layout.size(), 0.0);
+  system().start_memory(std::span(rest.extra).first(layout.pools));
+  take_over(std::move(rest));
+  make_controller();
+}
+
+void World::Impl::make_controller() {
+  data.emplace(system(), amounts.gravity, state, gravity_mass(said.builder, system().parts(), options));
+  controller.emplace(
+      StepContext{options, said.builder.bodies(), *parallel, methods, *data, state, layout, first_stencils},
+      amounts, interrupt);
   controller->stepper().on_progress(progress);
 }
 
@@ -234,13 +300,23 @@ Result<void> World::set_amount(EffectId effect, double amount) {
   if (auto r = w.compile(); !r) return r;
   if (auto r = check(effect); !r) return Error{"set_amount: " + r.error()};
   const auto i = static_cast<std::size_t>(effect);
+  const std::string& name = w.said.sources[i]->name();
   Amount* a = w.instances[i]->amount();
-  if (!a) return Error{"set_amount: effect \"" + w.sources[i]->name() + "\" has no amount to set"};
+  if (!a) return Error{"set_amount: effect \"" + name + "\" has no amount to set"};
   if (!std::isfinite(amount)) {
-    return Error{"set_amount: effect \"" + w.sources[i]->name() + "\": the amount must be a finite number"};
+    return Error{"set_amount: effect \"" + name + "\": the amount must be a finite number"};
   }
   a->set(amount);
   return {};
+}
+
+template <class Step>
+StepReport World::Impl::after_compile(Step&& step) {
+  const bool waits = draft || !compiled();
+  if (auto r = compile(); !r) return invalid_step(r.error(), state.t);
+  StepReport report = step();
+  if (waits) report.compiled = compile_report;
+  return report;
 }
 
 StepReport World::step(double h) {
@@ -248,21 +324,15 @@ StepReport World::step(double h) {
 }
 
 StepReport World::step(double h, const StepBudget& budget) {
-  Impl& w = *impl_;
-  if (auto r = w.compile(); !r) return invalid_step(r.error(), w.state.t);
-  return w.controller->step(h, budget);
+  return impl_->after_compile([&] { return impl_->controller->step(h, budget); });
 }
 
 StepReport World::advance(double h) {
-  Impl& w = *impl_;
-  if (auto r = w.compile(); !r) return invalid_step(r.error(), w.state.t);
-  return w.controller->advance(h);
+  return impl_->after_compile([&] { return impl_->controller->advance(h); });
 }
 
 StepReport World::follow(double length) {
-  Impl& w = *impl_;
-  if (auto r = w.compile(); !r) return invalid_step(r.error(), w.state.t);
-  return w.controller->follow(length);
+  return impl_->after_compile([&] { return impl_->controller->follow(length); });
 }
 
 void World::cancel() {
@@ -270,7 +340,7 @@ void World::cancel() {
 }
 
 std::string World::method() const {
-  if (!impl_->compile()) return {};
+  if (!impl_->ready()) return {};
   return impl_->methods.description();
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "engine/step/controller.h"
+#include "engine/world/description.h"
 #include "isochor/world.h"
 
 namespace isochor {
@@ -14,38 +15,54 @@ struct ScenePart {
 };
 
 struct World::Impl {
-  Impl(WorldOptions said, std::unique_ptr<Parallel> threads)
-      : options(std::move(said)), parallel(std::move(threads)), methods(options, *parallel) {
-    builder.set_world(WorldNumbers::next_world());
+  Impl(WorldOptions given, std::unique_ptr<Parallel> threads)
+      : options(std::move(given)),
+        parallel(std::move(threads)),
+        amounts(instances, Gravity(options.gravity, options.gravity_curve)),
+        methods(options, *parallel) {
+    said.builder.set_world(WorldNumbers::next_world());
     methods.set_interrupt([this] { return interrupt.raised(); });
   }
 
   // What the host said.
   WorldOptions options;
   std::unique_ptr<Parallel> parallel;
-  Builder builder;
-  std::vector<EffectPtr> sources;
+  Description said;                  // what the compiled scene was made of, or will be
+  std::optional<Description> draft;  // of a compiled world that is to change
   std::function<void(const ProgressInfo&)> progress;
   Interrupt interrupt;
 
   // The compiled scene.
   std::vector<std::unique_ptr<EffectInstance>> instances;  // of sources
   std::vector<std::vector<HeldDirection>> held_by;         // by effect
-  Amounts amounts{instances};
+  Amounts amounts;
   Methods methods;
   std::string compile_error;
+  CompileReport compile_report;
   std::vector<ScenePart> described;  // made when first asked for
 
   // What survives a step, and who makes steps; made by compile().
   State state;
   StateLayout layout;
+  // That the scene begins with, where stencils change with what is close.
+  std::vector<std::shared_ptr<const StencilPool>> first_stencils;
   std::optional<IncrementData> data;
   std::optional<Controller> controller;
 
   bool compiled() const { return controller && methods.ready(); }
-  // Null, and a line in the log, where an id leads nowhere; `call` is who was asked.
-  const BodyData* find_body(BodyId body, const char* call) const;
+  // What changes are made to.
+  Description& open_draft();
+  const Description& latest() const { return draft ? *draft : said; }
+  // Null, and a line in the log, where an id leads nowhere; `call` is who was asked. Changes that wait are
+  // made first.
+  const BodyData* find_body(BodyId body, const char* call);
   Result<void> compile();
+  // The same for calls that only ask: whether there is a compiled scene. Why a change could not be made is
+  // left for compile() and the next step to tell.
+  bool ready();
+  // What a step does, behind the changes that wait for it.
+  template <class Step>
+  StepReport after_compile(Step&& step);
   const System& system() const { return methods.system(); }
   Assembly& assembly() { return methods.chosen().assembly(); }
   std::span<const double> pool_memory() const { return layout.of_pools(state.extra); }
@@ -62,11 +79,17 @@ struct World::Impl {
   template <class M>
   Result<void> check_moment(const M& moment) const;  // of a saved state
 
- private:
-  Result<void> compile_once();
-  void tell_idle_rows();
-  std::vector<double> gravity_mass() const;
+  // The state at rest.
   void begin_state();
+  void take_over(State&& next);
+  Result<void> compile_like(Impl& other);  // renewal.cpp
+
+ private:
+  Result<void> compile_first();
+  void tell_idle_rows();
+  void make_controller();
+
+  Result<void> renew();  // renewal.cpp
 };
 
 }  // namespace isochor

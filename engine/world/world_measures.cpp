@@ -16,8 +16,8 @@ std::vector<Vec3> World::Impl::momenta() {
 
 BodyMeasures World::measures(BodyId body) const {
   Impl& w = *impl_;
-  if (!w.find_body(body, "measures") || !w.compile()) return {};
-  const BodyData& b = w.builder.body(body);
+  if (!w.find_body(body, "measures") || !w.ready()) return {};
+  const BodyData& b = w.said.builder.body(body);
   BodyMeasures m = measure_body(b, w.system().parts(), w.state.x);
   m.name = b.name;
   const std::vector<Vec3> moving = w.momenta();
@@ -57,7 +57,7 @@ BodyMeasures World::measures(BodyId body) const {
 
 double World::elastic_energy() const {
   Impl& w = *impl_;
-  if (!w.compile()) return 0;
+  if (!w.ready()) return 0;
   w.evaluate_state(Want::value);
   double energy = w.assembly().energy();
   for (const ComplianceEntry& e : w.system().compliance()) {
@@ -69,7 +69,7 @@ double World::elastic_energy() const {
 
 double World::kinetic_energy() const {
   double energy = 0;
-  if (!impl_->compiled()) return energy;
+  if (!impl_->compiled() || !impl_->ready()) return energy;
   const std::vector<Vec3> moving = impl_->momenta();
   for (std::size_t i = 0; i < moving.size(); ++i) energy += 0.5 * dot(moving[i], impl_->state.v[i]);
   return energy;
@@ -107,7 +107,7 @@ double World::Impl::law_energy() {
 Energies World::energies() const {
   Energies e;
   Impl& w = *impl_;
-  if (!w.compile()) return e;
+  if (!w.ready()) return e;
   const SystemParts& parts = w.system().parts();
   if (w.system().prescribed_rows() > 0) {
     std::vector<double> phi(w.data->prescribed().size()), rest_phi(phi.size());
@@ -125,6 +125,7 @@ Energies World::energies() const {
   e.kinetic = kinetic_energy();
   std::vector<Vec3> force(w.state.x.size());
   for (const auto& load : parts.loads) load->add(w.state.t, force);
+  for (std::size_t i = 0; i < w.state.forces.size(); ++i) force[i] += w.state.forces[i];
   e.loads = 0 - work_on(force, w.state.x, parts.rest);
   const Vec3 g = w.data->gravity(w.state.t);
   for (std::size_t i = 0; i < force.size(); ++i) force[i] = w.data->weight()[i] * g;
@@ -134,7 +135,7 @@ Energies World::energies() const {
 
 std::array<Vec3, 2> World::momentum() const {
   std::array<Vec3, 2> sum{};
-  if (!impl_->compiled()) return sum;
+  if (!impl_->compiled() || !impl_->ready()) return sum;
   const std::vector<Vec3> moving = impl_->momenta();
   for (std::size_t i = 0; i < moving.size(); ++i) {
     sum[0] += moving[i];

@@ -52,10 +52,31 @@ const std::string& World::body_name(BodyId body) const {
   return b ? b->name : none;
 }
 Index World::body_count() const {
-  return impl_->builder.body_count();
+  return impl_->latest().builder.body_slots().taken();
+}
+std::vector<BodyId> World::bodies() const {
+  const Builder& builder = impl_->latest().builder;
+  std::vector<BodyId> all;
+  for (Index b = 0; b < builder.body_slots().size(); ++b) {
+    if (builder.body_slots().holds(b))
+      all.push_back(WorldNumbers::make<BodyTag>(b, builder.world(), builder.body_slots().generation(b)));
+  }
+  return all;
+}
+std::vector<EffectId> World::effects() const {
+  const Description& d = impl_->latest();
+  std::vector<EffectId> all;
+  for (const Index e : d.order)
+    all.push_back(WorldNumbers::make<EffectTag>(e, d.builder.world(), d.places.generation(e)));
+  return all;
+}
+const std::string& World::effect_name(EffectId effect) const {
+  static const std::string none;
+  if (!check(effect)) return none;
+  return impl_->latest().sources[static_cast<std::size_t>(effect)]->name();
 }
 const std::vector<std::string>& World::warnings() const {
-  return impl_->builder.warnings();
+  return impl_->said.builder.warnings();
 }
 
 std::vector<double> World::Impl::row_residuals() {
@@ -83,7 +104,7 @@ std::vector<double> World::Impl::row_residuals() {
 
 BodyFields World::fields(BodyId body) const {
   Impl& w = *impl_;
-  if (!w.find_body(body, "fields") || !w.compile()) return {};
+  if (!w.find_body(body, "fields") || !w.ready()) return {};
   w.evaluate_state(Want::gradient);
   const SystemParts& parts = w.system().parts();
   std::vector<std::span<const double>> multipliers;
@@ -91,16 +112,17 @@ BodyFields World::fields(BodyId body) const {
     multipliers.push_back(w.assembly().function_multipliers(p));
   }
   std::vector<double> nodal(parts.rest.size(), std::nan(""));
-  for (const auto& instance : w.instances) instance->node_multipliers({w.system(), w.state}, nodal);
-  BodyFields fields = recover_fields({w.builder.body(body), parts, w.state.x, multipliers, nodal});
-  add_surface_fields(w.instances, {w.system(), w.state}, w.builder.body(body), fields);
+  for (const Index e : w.said.order) w.instances[at(e)]->node_multipliers({w.system(), w.state}, nodal);
+  BodyFields fields = recover_fields({w.said.builder.body(body), parts, w.state.x, multipliers, nodal});
+  add_surface_fields(w.instances, {w.system(), w.state}, w.said.builder.body(body), fields);
   return fields;
 }
 
 std::vector<Gauge> World::gauges() const {
   std::vector<Gauge> out;
-  if (!impl_->compile()) return out;
-  for (const auto& instance : impl_->instances) instance->gauges({impl_->system(), impl_->state}, out);
+  if (!impl_->ready()) return out;
+  for (const Index e : impl_->said.order)
+    impl_->instances[at(e)]->gauges({impl_->system(), impl_->state}, out);
   return out;
 }
 
@@ -109,8 +131,9 @@ std::array<Vec3, 2> World::reaction(EffectId effect) const {
   Impl& w = *impl_;
   const auto i = static_cast<std::size_t>(effect);
   if (auto r = check(effect); !r && w.options.log) w.options.log("reaction: " + r.error());
-  if (!check(effect) || !w.compile()) return sum;
-  if (i < w.instances.size()) sum = w.instances[i]->reaction({w.system(), w.state});
+  if (!check(effect) || !w.ready()) return sum;
+  if (i >= w.instances.size() || !w.instances[i]) return sum;
+  sum = w.instances[i]->reaction({w.system(), w.state});
   if (i >= w.held_by.size()) return sum;
   for (const HeldDirection& h : w.held_by[i]) {
     const Vec3 f = dot(h.direction, w.state.reactions[at(h.node)]) * h.direction;
@@ -122,7 +145,7 @@ std::array<Vec3, 2> World::reaction(EffectId effect) const {
 
 double World::constitutive_residual() const {
   Impl& w = *impl_;
-  if (!w.compile()) return 0;
+  if (!w.ready()) return 0;
   const std::vector<double> theta = w.row_residuals();
   double worst = 0;
   for (std::size_t r = 0; r < theta.size(); ++r) {
@@ -134,7 +157,7 @@ double World::constitutive_residual() const {
 WorldSize World::size() const {
   WorldSize s;
   Impl& w = *impl_;
-  if (!w.compile()) return s;
+  if (!w.ready()) return s;
   s.nodes = w.system().nodes();
   s.displacement_unknowns = w.system().free_unknowns();
   s.multipliers = w.system().rows();

@@ -34,7 +34,7 @@ Result<void> World::set_velocities(BodyId body, std::span<const Vec3> velocities
                  ", in which nothing has a velocity; use a scheme of dynamics"};
   }
   w.controller->settled().reset();  // what a host sets is where it wants to go on from
-  const BodyData& b = w.builder.body(body);
+  const BodyData& b = w.said.builder.body(body);
   if (auto r = check_nodes("set_velocities", "velocities", b, velocities); !r) return r;
   std::copy(velocities.begin(), velocities.end(), w.state.v.begin() + b.first_node);
   const auto past = w.layout.of_scheme(w.state.extra);
@@ -47,7 +47,7 @@ Result<void> World::set_positions(BodyId body, std::span<const Vec3> positions) 
   if (auto r = w.compile(); !r) return r;
   if (auto r = check(body); !r) return Error{"set_positions: " + r.error()};
   w.controller->settled().reset();  // what a host sets is where it wants to go on from
-  const BodyData& b = w.builder.body(body);
+  const BodyData& b = w.said.builder.body(body);
   if (auto r = check_nodes("set_positions", "positions", b, positions); !r) return r;
   const auto first = at(b.first_node);
   std::copy(positions.begin(), positions.end(), w.state.x.begin() + static_cast<std::ptrdiff_t>(first));

@@ -17,6 +17,17 @@ enum class StepStatus : std::uint8_t {
   unfinished,  // the budget ran out: the state is the best iterate, the residuals say how good
 };
 
+// What had to be done to compile a scene that was new or had changed.
+enum class CompileWork : std::uint8_t {
+  nothing,
+  numbers,    // other constants in the same structure: the next step makes new factors, as every step does
+  structure,  // other nodes, stencils or rows: patterns and the ordering of the factors are new as well
+};
+struct CompileReport {
+  CompileWork work = CompileWork::nothing;
+  double seconds = 0;  // without the ordering, which the next step counts as StageSeconds::analyze
+};
+
 struct StepReport : SolveCounters {
   StepStatus status = StepStatus::converged;
   std::string reason;  // empty when converged; else one sentence
@@ -37,6 +48,7 @@ struct StepReport : SolveCounters {
   std::string warning;
   double force_residual = 0, row_residual = 0, linear_residual = 0;
   StageSeconds seconds;
+  CompileReport compiled;  // of changes that waited for this step
 };
 
 struct ProgressInfo {

@@ -23,6 +23,7 @@
 #include "isochor/ids.h"
 #include "isochor/measures.h"
 #include "isochor/options.h"
+#include "isochor/poses.h"
 #include "isochor/reports.h"
 #include "isochor/selection.h"
 
@@ -49,11 +50,32 @@ class ISOCHOR_API World {
   World& operator=(World&&) noexcept;
   ~World();
 
-  // Bodies and effects are added before compile(); the mesh is checked here, names are resolved in compile().
+  // The mesh is checked here, names are resolved in compile().
   Result<BodyId> add_body(BodyDef body);
   Result<EffectId> add(EffectPtr effect);
-  // Builds the system. Called by the first step when the host has not.
+  // Builds the system, or what has changed of it. Called by what needs it: the next step, and all that reads
+  // the state. An error of the first compilation stays; changes of a compiled world that fail are taken back,
+  // all of them since the last compilation, which compile() or the next step says once, and the world goes on
+  // as it was.
   Result<void> compile();
+  // Of the last compilation that there was something to do for.
+  const CompileReport& compile_report() const;
+
+  // Changes of a world that lives, beside add_body() and add(). What is untouched keeps its state bit for
+  // bit, multipliers included; nodes that are new are at rest, rows that are new begin with zero. Ids of
+  // what is gone are refused.
+  //
+  // Cost, as CompileReport tells it: constants (materials, densities, and effects that are replaced by one of
+  // the same nodes and rows: friction, compliance, stiffness, rest lengths) cost new numbers, all else a new
+  // structure. Gravity, amounts, poses and forces cost nothing.
+  Result<void> remove(EffectId effect);
+  Result<void> remove(BodyId body);  // that no effect names
+  // Another definition in the place of an effect, whose id, multipliers and memory stay where rows and nodes
+  // are as many as before; what a host has set of it (amount, pose) stays too.
+  Result<void> replace(EffectId effect, EffectPtr with);
+  // Of one region, or of all regions of the body where the name is empty.
+  Result<void> set_material(BodyId body, const std::string& region, MaterialPtr material);
+  Result<void> set_density(BodyId body, const std::string& region, double density);  // [kg/m^3]
 
   // One increment of h seconds (statics: of load factor). A rejected step leaves the state bit for bit as it
   // was.
@@ -79,6 +101,21 @@ class ISOCHOR_API World {
   // curve. In statics the next increment ramps from the old value to the new one.
   Result<void> set_amount(EffectId effect, double amount);
 
+  // Gravity [m/s^2] from now on instead of WorldOptions; ramps like amounts. Liquids in chambers keep theirs.
+  Result<void> set_gravity(const Vec3& gravity);
+  // Where a support or an obstacle is from now on, instead of its displacement, motion or bone: it gets there
+  // in the course of the next increment. The pose carries points as a bone does (poses.h): from the first
+  // keyframe of its track, or from the origin where it has none, so that a pose at (d, no turn) displaces by
+  // d. Its time does not matter.
+  Result<void> set_pose(EffectId effect, const Pose& pose);
+  // Dead forces on nodes [N], one a node: in place of those of the body, or on top of them at one node or at
+  // a point of the body (at rest [m]). They stay until they are set anew or cleared, of all bodies; in
+  // statics they jump.
+  Result<void> set_forces(BodyId body, std::span<const Vec3> forces);
+  Result<void> add_force(BodyId body, Index node, const Vec3& force);
+  Result<void> add_force_at(BodyId body, const Vec3& point, const Vec3& force);
+  void clear_forces();
+
   // Puts the nodes of a body somewhere else, one position a node: crushed, tangled or turned inside out. The
   // body is at rest there and its rows have no multipliers; the next step starts from this. For materials
   // that live through inversion.
@@ -94,13 +131,18 @@ class ISOCHOR_API World {
   Result<void> check(EffectId effect) const;
 
   double time() const;
-  // Views of the state's own numbers, valid until the next step or load().
+  // Views of the state's own numbers. Steps, load(), reset() and changes of constants leave them where they
+  // are and put new numbers in; where the structure changes, and with the world, they end.
   std::span<const Vec3> positions(BodyId body) const;
   std::span<const Vec3> velocities(BodyId body) const;
   std::span<const Vec3> rest_positions(BodyId body) const;
   // The mesh as the engine uses it (raised to Tet10 when the element asked for it).
   const Mesh& mesh(BodyId body) const;
   const std::string& body_name(BodyId body) const;
+  const std::string& effect_name(EffectId effect) const;
+  // All that are there, changes that wait included: bodies by number, effects in the order they were added.
+  std::vector<BodyId> bodies() const;
+  std::vector<EffectId> effects() const;
   Index body_count() const;
 
   BodyMeasures measures(BodyId body) const;
@@ -130,6 +172,15 @@ class ISOCHOR_API World {
   // Everything that survives a step. Loading into a world of the same scene continues with the same bits.
   std::vector<std::byte> save() const;
   Result<void> load(std::span<const std::byte> bytes);
+  // Back to the state at rest at time 0 that the scene begins with, with the bits of a new world. Bodies,
+  // effects and materials stay as they are now; amounts, gravity and poses that a host has set, and its
+  // forces, are forgotten.
+  Result<void> reset();
+  // Another world with the same scene, state and settings, which goes on with the same bits; what nobody
+  // changes (tables of the system, the ordering of its factors) is shared. Ids of this one are good there as
+  // well. Callbacks stay behind, the log comes along. With threads of its own where they are given.
+  Result<World> clone() const;
+  Result<World> clone(std::shared_ptr<ThreadPool> threads) const;
 
   void on_progress(std::function<void(const ProgressInfo&)> callback);
   // Asked many times a second while a step works, from any of the world's threads; true cancels the step,

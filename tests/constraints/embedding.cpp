@@ -1,5 +1,5 @@
 // Points of cells as weighted sums of nodes.
-#include "constraints/stencil/embedding.h"
+#include "engine/scene/embedding.h"
 
 #include <cmath>
 #include <random>
@@ -36,7 +36,7 @@ TEST_CASE("points of every kind of cell are where they were asked for, and follo
       for (int k = 0; k < 50; ++k) {
         // Inside, and a little outside.
         const Vec3 p{-0.05 + 1.1 * drawn(engine), -0.05 + 0.8 * drawn(engine), -0.05 + 0.6 * drawn(engine)};
-        const EmbeddedPoint e = test::value(embed(data, mesh.nodes, p, "test"));
+        const PointInBody e = test::value(embed(data, mesh.nodes, p, "test"));
         double sum = 0;
         for (const double w : e.weight) sum += w;
         CHECK(sum == Approx(1));

@@ -38,24 +38,22 @@ DirichletDef rows_def(SupportTreatment treatment) {
 
 void add_held(std::vector<SceneCase>& out, Element element) {
   for (const auto treatment : {SupportTreatment::multiplier, SupportTreatment::stiffness}) {
-    SceneCase c = on_block(
-        "support by rows, treatment " + std::to_string(static_cast<int>(treatment)), element,
-        {"constraints/dirichlet", "constraints/point_pool", "constraints/embedding", "constraints/poses"},
-        dirichlet(rows_def(treatment)));
+    SceneCase c =
+        on_block("support by rows, treatment " + std::to_string(static_cast<int>(treatment)), element,
+                 {"constraints/dirichlet", "constraints/point_pool"}, dirichlet(rows_def(treatment)));
     c.rigid_invariant = false;  // compared with places in space
     out.push_back(c);
   }
   DirichletDef bone = rows_def(SupportTreatment::eliminated);
   bone.points.clear();
-  out.push_back(on_block("support on a bone", element, {"constraints/dirichlet", "constraints/poses"},
-                         dirichlet(bone)));
+  out.push_back(on_block("support on a bone", element, {"constraints/dirichlet"}, dirichlet(bone)));
   for (const double stiffness : {0.0, 5.0}) {
     TieDef def;
     def.where.surfaces = {"x1"};
     def.to = BodyId{1};
     def.stiffness = stiffness;
     SceneCase c = on_block("tie, stiffness " + std::to_string(stiffness), element,
-                           {"constraints/tie", "constraints/point_pool", "constraints/embedding"}, tie(def));
+                           {"constraints/tie", "constraints/point_pool"}, tie(def));
     c.more_bodies = {mapped(c.mesh, [](const Vec3& p) { return p + Vec3{0.813, 0.021, -0.017}; })};
     c.rigid_invariant = false;  // a gap turns with the bodies, the axes along which it is measured do not
     out.push_back(c);
@@ -63,7 +61,7 @@ void add_held(std::vector<SceneCase>& out, Element element) {
 }
 
 void add_threads(std::vector<SceneCase>& out, Element element) {
-  const std::vector<std::string> covers = {"constraints/segment_pool", "constraints/embedding"};
+  const std::vector<std::string> covers = {"constraints/segment_pool"};
   const auto with = [&](const std::string& unit) {
     auto all = covers;
     all.push_back(unit);

@@ -135,7 +135,9 @@ inline isochor::Result<std::shared_ptr<const isochor::System>> random_system(
   const isochor::Vec3 slanted{0.6, 0, 0.8}, across{0, 1, 0}, third{-0.8, 0, 0.6};
   parts.prescribers.push_back(std::make_shared<GivenNodes>(std::vector<isochor::PrescribedNode>{
       {0, 1, {slanted}}, {1, 2, {slanted, across}}, {2, 3, {slanted, across, third}}}));
-  return isochor::System::compile(std::move(parts));
+  auto system = isochor::System::compile(std::move(parts));
+  if (!system) return isochor::Error{system.error()};
+  return std::shared_ptr<const isochor::System>(std::move(system).value());
 }
 
 // [K + mass_scale M, G^T; G, -C] from products with the assembly, in free directions, then all compliant

@@ -103,9 +103,16 @@ TEST_CASE("bodies can be given by number before there is a world") {
 TEST_CASE("a place that was given away again is not the old thing") {
   using isochor::WorldNumbers;
   const std::uint64_t world = WorldNumbers::next_world();
-  const BodyId old = WorldNumbers::make<isochor::BodyTag>(2, world, 1);
-  CHECK(WorldNumbers::look_up(old, 3, world, 1) == WorldNumbers::Found::here);
-  const auto found = WorldNumbers::look_up(old, 3, world, 2);
+  isochor::Slots places;
+  for (int k = 0; k < 3; ++k) places.take();
+  const BodyId old = WorldNumbers::make<isochor::BodyTag>(2, world, places.generation(2));
+  CHECK(WorldNumbers::look_up(old, places, world) == WorldNumbers::Found::here);
+  places.release(2);
+  CHECK(WorldNumbers::look_up(old, places, world) == WorldNumbers::Found::removed);
+  CHECK(WorldNumbers::look_up(BodyId{2}, places, world) == WorldNumbers::Found::removed);
+  CHECK(places.take() == 2);
+  CHECK(WorldNumbers::look_up(BodyId{2}, places, world) == WorldNumbers::Found::here);
+  const auto found = WorldNumbers::look_up(old, places, world);
   CHECK(found == WorldNumbers::Found::removed);
   CHECK(isochor::why_not(found, "body", old.number(), 3) == "body number 2 was removed");
 }

@@ -10,10 +10,10 @@
 #include "constraints/contact/rigid/contact_pool.h"
 #include "constraints/contact/rigid/flush_nodes.h"
 #include "constraints/contact/rigid/rigid_body.h"
-#include "constraints/stencil/embedding.h"
 #include "constraints/stencil/surface_nodes.h"
 #include "engine/base/text.h"
 #include "engine/scene/builder.h"
+#include "engine/scene/embedding.h"
 
 namespace isochor {
 
@@ -22,8 +22,10 @@ namespace {
 class ContactInstance final : public EffectInstance {
  public:
   ContactInstance(std::shared_ptr<const ContactPool> pool, std::shared_ptr<const ContactRows> rows,
-                  Index row_pool)
-      : pool_(std::move(pool)), rows_(std::move(rows)), row_pool_(row_pool) {}
+                  Index row_pool, std::shared_ptr<LivePose> pose)
+      : pool_(std::move(pool)), rows_(std::move(rows)), row_pool_(row_pool), pose_(std::move(pose)) {}
+
+  LivePose* pose() override { return pose_.get(); }
 
   void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
     const ContactFrame frame = pool_->geometry().frame(c.state.t, c.state.x);
@@ -77,6 +79,7 @@ class ContactInstance final : public EffectInstance {
   std::shared_ptr<const ContactPool> pool_;
   std::shared_ptr<const ContactRows> rows_;
   Index row_pool_;
+  std::shared_ptr<LivePose> pose_;  // null: a free rigid body
 };
 
 class ContactEffect final : public EffectSource {
@@ -119,7 +122,9 @@ class ContactEffect final : public EffectSource {
       points = rigid.value().points;
       shape = rigid.value().shape;
     }
-    RigidGeometry geometry(shape, points);
+    std::shared_ptr<LivePose> pose;  // of an obstacle
+    if (!points) pose = std::make_shared<LivePose>(shape.motion);
+    RigidGeometry geometry(shape, points, pose);
     auto touching = def_.rigid.empty() ? add_nodes(builder, geometry, called)
                                        : add_touch_points(builder, geometry, called);
     if (!touching) return Error{touching.error()};
@@ -135,7 +140,7 @@ class ContactEffect final : public EffectSource {
     if (auto r = find_overlap(builder, *pool, *rows); !r) return Error{r.error()};
     rows->stencil_pool = builder.add_stencils(pool);
     const Index row_pool = builder.add_rows(rows);
-    return std::unique_ptr<EffectInstance>(std::make_unique<ContactInstance>(pool, rows, row_pool));
+    return std::unique_ptr<EffectInstance>(std::make_unique<ContactInstance>(pool, rows, row_pool, pose));
   }
 
  private:

@@ -63,7 +63,7 @@ double ContactPool::entry(double t0, double t1, std::span<const Vec3> from, std:
   const RigidGeometry& g = geometry();
   // Of a cell: next to a side, where a node that is pushed may slip off, more of the way counts.
   constexpr double most = 0.5, most_at_side = 0.1;
-  if (g.shape_points() || g.shape().shape == ObstacleShape::plane || g.shape().motion.keys.empty()) return 0;
+  if (!g.moves() || g.shape().shape == ObstacleShape::plane) return 0;
   const ContactFrame before = g.frame(t0, x), now = g.frame(t1, x);
   if (same_pose(before, now)) return 0;
   double largest = 0;

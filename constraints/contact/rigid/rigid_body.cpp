@@ -158,7 +158,7 @@ class RigidBodyEffect final : public EffectSource {
     auto rows = std::make_shared<DistanceRows>(def_.name);
     for (std::size_t a = 0; a < 4; ++a) {
       for (std::size_t b = 0; b < a; ++b) {
-        const EmbeddedPoint first{{body.points.node[b]}, {1.0}}, second{{body.points.node[a]}, {1.0}};
+        const PointInBody first{{body.points.node[b]}, {1.0}}, second{{body.points.node[a]}, {1.0}};
         if (auto r = pool->add(first, second, builder.rest()); !r) return Error{who() + r.error()};
         const Index row = rows->rows();
         const double length = pool->rest_length(row);

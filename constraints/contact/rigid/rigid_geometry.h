@@ -5,6 +5,7 @@
 
 #include "constraints/contact/friction/friction_point.h"
 #include "constraints/contact/rigid/contact_frame.h"
+#include "engine/scene/live_pose.h"
 #include "engine/system/pool.h"
 
 namespace isochor {
@@ -46,9 +47,11 @@ class RigidGeometry {
   };
   class Rates;  // rigid_touch.cpp
 
-  // The pose of `shape` counts where there are no control points.
-  explicit RigidGeometry(Obstacle shape, std::optional<ControlPoints> points = {})
-      : shape_(std::move(shape)), points_(points) {}
+  // The pose of `shape` counts where there are no control points; `live`: what moves it in place of its own
+  // motion.
+  explicit RigidGeometry(Obstacle shape, std::optional<ControlPoints> points = {},
+                         std::shared_ptr<const LivePose> live = nullptr)
+      : shape_(std::move(shape)), points_(points), live_(std::move(live)) {}
   void add(Index node, double stick, double size = 0, const Vec3& inset = {});
   // A point of a free rigid body at `own` in its axes, which keeps `offset` away.
   void add(const ControlPoints& body, const Vec3& own, double offset, double stick);
@@ -61,8 +64,9 @@ class RigidGeometry {
   // Position of a point, and the frame of the shape, at positions x and time t.
   Vec3 position(Index s, std::span<const Vec3> x) const;
   ContactFrame frame(double t, std::span<const Vec3> x) const {
-    return points_ ? frame_of(*points_, x) : frame_of(pose_of(shape_, t));
+    return points_ ? frame_of(*points_, x) : frame_of(pose_of(shape_, track(), t));
   }
+  bool moves() const { return !points_ && !track().keys.empty(); }
   // Where the distance of a point is taken, in the axes of the shape.
   Vec3 own_place(Index s, const ContactFrame& frame, std::span<const Vec3> x) const {
     return frame.to_own(position(s, x)) + point_[at(s)].inset;
@@ -87,8 +91,11 @@ class RigidGeometry {
   Rates rates(const StencilRequest& request, const Frames& frames, Index s, const TouchAt& touch) const;
 
  private:
+  const PoseTrack& track() const { return live_ ? live_->track() : shape_.motion; }
+
   Obstacle shape_;
   std::optional<ControlPoints> points_;
+  std::shared_ptr<const LivePose> live_;
   Lists nodes_;
   std::vector<RigidPoint> point_;
 };

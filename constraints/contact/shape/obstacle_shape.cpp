@@ -89,7 +89,7 @@ Distance to_box(const Obstacle& s, const Vec3& y) {
 
 }  // namespace
 
-ObstaclePose pose_of(const Obstacle& o, double t) {
+ObstaclePose pose_of(const Obstacle& o, const PoseTrack& track, double t) {
   const Vec3 z = (1 / norm(o.axis)) * o.axis;
   Vec3 x = o.side - dot(o.side, z) * z;
   if (dot(x, x) < 1e-12 * dot(o.side, o.side)) {
@@ -98,12 +98,11 @@ ObstaclePose pose_of(const Obstacle& o, double t) {
   }
   x = (1 / norm(x)) * x;
   ObstaclePose pose{o.position, columns(x, cross(z, x), z)};
-  if (o.motion.keys.empty()) return pose;
-  const Vec3 origin = carried(o.motion, t, {0, 0, 0});
-  const Mat3 turn =
-      columns(carried(o.motion, t, {1, 0, 0}) - origin, carried(o.motion, t, {0, 1, 0}) - origin,
-              carried(o.motion, t, {0, 0, 1}) - origin);
-  pose.position = carried(o.motion, t, o.position);
+  if (track.keys.empty()) return pose;
+  const Vec3 origin = carried(track, t, {0, 0, 0});
+  const Mat3 turn = columns(carried(track, t, {1, 0, 0}) - origin, carried(track, t, {0, 1, 0}) - origin,
+                            carried(track, t, {0, 0, 1}) - origin);
+  pose.position = carried(track, t, o.position);
   pose.R = columns(turn * x, turn * cross(z, x), turn * z);
   return pose;
 }

@@ -14,7 +14,11 @@ struct ObstaclePose {
   Vec3 to_own(const Vec3& x) const { return transposed_times(R, x - position); }
   Vec3 to_world(const Vec3& y) const { return position + R * y; }
 };
-ObstaclePose pose_of(const Obstacle& obstacle, double t);
+// `track`: what moves it.
+ObstaclePose pose_of(const Obstacle& obstacle, const PoseTrack& track, double t);
+inline ObstaclePose pose_of(const Obstacle& obstacle, double t) {
+  return pose_of(obstacle, obstacle.motion, t);
+}
 
 // The distance to a convex shape is a convex function: its curvature is positive semi-definite.
 bool is_solid(const Obstacle& shape);  // a mesh or a distance field

@@ -6,10 +6,10 @@
 
 #include "constraints/contact/surface/edge_contact.h"
 #include "constraints/contact/surface/surface_contact_pool.h"
-#include "constraints/stencil/embedding.h"
 #include "constraints/stencil/surface_nodes.h"
 #include "engine/base/text.h"
 #include "engine/scene/builder.h"
+#include "engine/scene/embedding.h"
 #include "isochor/effects/contact.h"
 
 namespace isochor {

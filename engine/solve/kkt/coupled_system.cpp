@@ -30,15 +30,21 @@ CoupledSystem::CoupledSystem(const System& system, FactoredMatrix& matrix, const
   factored_held_.assign(at(system.rows()), 0);
   movable_.assign(at(system.rows()), 1);
   own_compliance_.assign(at(system.rows()), 0);
-  for (const ComplianceEntry& e : system.compliance()) {
+  take_new_numbers();
+  for (const LawPlace& law : system.laws()) {
+    std::fill_n(movable_.begin() + system.first_row(law.row_pool),
+                system.parts().row_pools[at(law.row_pool)]->rows(), std::uint8_t{0});
+  }
+}
+
+void CoupledSystem::take_new_numbers() {
+  if (own_compliance_.empty()) return;
+  std::fill(own_compliance_.begin(), own_compliance_.end(), 0.0);
+  for (const ComplianceEntry& e : system_.compliance()) {
     if (e.row == e.col)
       own_compliance_[at(e.row)] += e.value;
     else
       movable_[at(e.row)] = movable_[at(e.col)] = 0;
-  }
-  for (const LawPlace& law : system.laws()) {
-    std::fill_n(movable_.begin() + system.first_row(law.row_pool),
-                system.parts().row_pools[at(law.row_pool)]->rows(), std::uint8_t{0});
   }
 }
 

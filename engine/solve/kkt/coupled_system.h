@@ -17,6 +17,8 @@ class CoupledSystem {
   CoupledSystem(const System& system, FactoredMatrix& matrix, const ScaledUnknowns& unknowns,
                 RowJacobian& jacobian, CondensedRows& condensed);
 
+  // Looks at the compliance of the rows once more.
+  void take_new_numbers();
   // Notes which rows a matrix holds that is about to be factored.
   void assemble(const MatrixValues& values);
   bool holds(std::span<const std::uint8_t> held) const;

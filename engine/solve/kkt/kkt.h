@@ -55,6 +55,10 @@ class Kkt {
     return system_->treated().bordered.empty() && system_->treated().dual.empty();
   }
   void prepare_coupled() { coupled_.emplace(*system_, matrix_, unknowns_, jacobian_, condensed_); }
+  // The system has other numbers than before, in the same structure.
+  void take_new_numbers() {
+    if (coupled_) coupled_->take_new_numbers();
+  }
   // Whether the factors hold these rows.
   bool holds(std::span<const std::uint8_t> clamped) const { return !coupled_ || coupled_->holds(clamped); }
   bool solve_coupled(const UnsymmetricPart* part, std::span<const std::uint8_t> clamped,

@@ -35,7 +35,7 @@ UnsymmetricPart::UnsymmetricPart(std::shared_ptr<const System> system, const Par
   std::size_t blocks = 0, columns = 0;
   for (const auto& [p, lagged] : system_->facets().lagged) {
     const StencilPool& pool = *system_->parts().stencil_pools[at(p)];
-    PoolSlots slots{p, lagged, blocks, columns, {0}};
+    PoolSlots slots{p, blocks, columns, {0}};
     for (Index s = 0; s < pool.stencils(); ++s) {
       const auto n = static_cast<std::int64_t>(pool.nodes()[s].size());
       slots.block_offset.push_back(slots.block_offset.back() + n * n);
@@ -131,7 +131,7 @@ void UnsymmetricPart::evaluate(const Assembly& assembly, std::span<const Vec3> x
       const Index functions = pool.functions();
       std::fill_n(out.column.begin() + functions * offset[at(begin)],
                   functions * (offset[at(end)] - offset[at(begin)]), Vec3{});
-      slots.lagged->lag_derivatives(part, out);
+      pool.facets().lagged->lag_derivatives(part, out);
     });
   }
 }

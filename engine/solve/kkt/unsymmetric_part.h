@@ -30,7 +30,6 @@ class UnsymmetricPart {
  private:
   struct PoolSlots {
     Index pool = 0;
-    const LaggedStencils* lagged = nullptr;
     std::size_t first_block = 0, first_column = 0;
     std::vector<std::int64_t> block_offset;
   };

@@ -1,4 +1,4 @@
-#include "constraints/stencil/embedding.h"
+#include "engine/scene/embedding.h"
 
 #include <algorithm>
 #include <array>
@@ -47,8 +47,8 @@ bool place_in_hex(std::span<const Vec3> rest, const Index* cell, const Vec3& poi
   return false;
 }
 
-EmbeddedPoint sorted(const std::map<Index, double>& terms) {
-  EmbeddedPoint p;
+PointInBody sorted(const std::map<Index, double>& terms) {
+  PointInBody p;
   for (const auto& [node, weight] : terms) {
     if (weight == 0) continue;
     p.nodes.push_back(node);
@@ -59,7 +59,7 @@ EmbeddedPoint sorted(const std::map<Index, double>& terms) {
 
 }  // namespace
 
-Vec3 EmbeddedPoint::at(std::span<const Vec3> x) const {
+Vec3 PointInBody::at(std::span<const Vec3> x) const {
   Vec3 sum{};
   for (std::size_t a = 0; a < nodes.size(); ++a) sum += weight[a] * x[isochor::at(nodes[a])];
   return sum;
@@ -73,8 +73,8 @@ Error not_in_body(const BodyData& body, const Vec3& point, const std::string& wh
 }
 
 // As embed(), of hexahedra. Cells whose corners are far away are not asked.
-Result<EmbeddedPoint> embed_in_hexahedra(const BodyData& body, std::span<const Vec3> rest, const Vec3& point,
-                                         const std::string& who) {
+Result<PointInBody> embed_in_hexahedra(const BodyData& body, std::span<const Vec3> rest, const Vec3& point,
+                                       const std::string& who) {
   double least = 3;  // one cell beyond a side
   std::map<Index, double> terms;
   for (std::size_t c = 0; c + 8 <= body.global_cells.size(); c += 8) {
@@ -109,8 +109,8 @@ Result<EmbeddedPoint> embed_in_hexahedra(const BodyData& body, std::span<const V
 
 }  // namespace
 
-Result<EmbeddedPoint> embed(const BodyData& body, std::span<const Vec3> rest, const Vec3& point,
-                            const std::string& who) {
+Result<PointInBody> embed(const BodyData& body, std::span<const Vec3> rest, const Vec3& point,
+                          const std::string& who) {
   const auto per = static_cast<std::size_t>(nodes_per_cell(body.mesh.cell_type));
   if (body.mesh.cell_type == CellType::hex8) return embed_in_hexahedra(body, rest, point, who);
   double inside = -std::numeric_limits<double>::infinity();
@@ -141,7 +141,7 @@ Result<EmbeddedPoint> embed(const BodyData& body, std::span<const Vec3> rest, co
   return sorted(terms);
 }
 
-EmbeddedPoint difference(const EmbeddedPoint& first, const EmbeddedPoint& second) {
+PointInBody difference(const PointInBody& first, const PointInBody& second) {
   std::map<Index, double> terms;
   for (std::size_t a = 0; a < second.nodes.size(); ++a) terms[second.nodes[a]] += second.weight[a];
   for (std::size_t a = 0; a < first.nodes.size(); ++a) terms[first.nodes[a]] -= first.weight[a];
