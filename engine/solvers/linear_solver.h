@@ -19,6 +19,7 @@ namespace isochor {
 // Lower triangle (diagonal included) of a symmetric matrix, compressed by columns, rows ascending in each
 // column.
 struct OrderingBase;
+struct SharedAnalysis;
 struct SymmetricPattern {
   Index size = 0;
   std::vector<std::int64_t> column_start;  // size + 1
@@ -34,6 +35,8 @@ struct SymmetricPattern {
   std::vector<std::uint8_t> multiplier;
   // Optional: a pattern of the same unknowns that differs in a few places, whose pivot sequence may serve.
   std::shared_ptr<OrderingBase> base;
+  // Optional: where solvers leave what they found out about the pattern, for others that are given it.
+  std::shared_ptr<SharedAnalysis> analysis;
 
   std::int64_t nonzeros() const { return column_start.empty() ? 0 : column_start.back(); }
 };

@@ -1,6 +1,7 @@
 // Fill-reducing pivot sequence, computed on the quotient graph of a pattern's groups.
 #pragma once
 
+#include <mutex>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -40,6 +41,7 @@ struct OrderingBase {
   SymmetricPattern pattern;
   Ordering ordering;
   double operations = 0;  // multiplications of the factorization; 0: not found yet
+  std::mutex mutex;       // systems of several worlds may share it
 };
 
 bool have_metis();

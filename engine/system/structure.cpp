@@ -46,6 +46,35 @@ bool same_list(const std::vector<std::shared_ptr<const T>>& a,
 
 }  // namespace
 
+namespace {
+
+template <class T>
+std::size_t bytes(const std::vector<T>& list) {
+  return list.capacity() * sizeof(T);
+}
+
+std::size_t bytes(const Gather& g) {
+  return bytes(g.offset) + bytes(g.source) + bytes(g.weight);
+}
+
+std::size_t bytes(const FilledRows& r) {
+  return bytes(r.row) + bytes(r.place);
+}
+
+}  // namespace
+
+std::size_t System::table_bytes() const {
+  const auto& [unknowns, gathers, treated, matrix, pools, layout] = *tables_;
+  const auto& pattern = matrix.pattern;
+  return bytes(unknowns.first) + bytes(unknowns.basis_of) + bytes(unknowns.bases) + bytes(gathers.row) +
+         bytes(gathers.function) + bytes(gathers.residual) + bytes(gathers.block) + bytes(gathers.jacobian) +
+         bytes(gathers.block_ends) + bytes(gathers.jacobian_ends) + bytes(gathers.row_begin) +
+         bytes(treated.kept) + bytes(treated.unknown) + bytes(treated.condensed) + bytes(treated.augmented) +
+         bytes(treated.bordered) + bytes(treated.dual) + bytes(matrix.block) + bytes(matrix.jacobian) +
+         bytes(matrix.compliance) + bytes(matrix.diagonal) + bytes(pattern.column_start) +
+         bytes(pattern.row) + bytes(pattern.group) + bytes(pools.slots);
+}
+
 bool same_structure(const SystemParts& a, const SystemParts& b) {
   return a.rest.size() == b.rest.size() && a.treatment == b.treatment &&
          a.border_wide_rows == b.border_wide_rows && same_list(a.stencil_pools, b.stencil_pools) &&

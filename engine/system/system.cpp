@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/solvers/front/front_tree.h"
 #include "engine/solvers/ordering.h"
 #include "engine/system/row_treatment.h"
 #include "engine/system/structure.h"
@@ -560,6 +561,7 @@ class SystemCompiler {
   }
 
   void find_ordering_base() {
+    t_->matrix.pattern.analysis = std::make_shared<SharedAnalysis>();
     if (!s_->renews_stencils()) return;
     if (!s_->parts_.ordering_base) {
       s_->parts_.ordering_base = std::make_shared<OrderingBase>();

@@ -172,6 +172,7 @@ class System {
   const MatrixPlaces& matrix() const { return tables_->matrix; }
   const PoolPlaces& pools() const { return tables_->pools; }
   const SystemFacets& facets() const { return facets_; }
+  std::size_t table_bytes() const;
   bool shares_tables(const System& other) const { return tables_ == other.tables_; }
 
   std::uint64_t layout() const { return tables_->layout; }

@@ -156,16 +156,16 @@ Result<void> World::reset() {
   return w.controller->stepper().surroundings().restore(w.pool_memory());
 }
 
-Result<World> World::clone() const {
-  return clone(std::shared_ptr<ThreadPool>());
-}
-
-Result<World> World::clone(std::shared_ptr<ThreadPool> threads) const {
+Result<World> World::clone(int threads) const {
   Impl& w = *impl_;
+  if (threads < 0 || threads > 1024) {
+    return Error{"clone: threads = " + std::to_string(threads) +
+                 "; give 0 (as many as this world has) or a number up to 1024"};
+  }
   if (auto r = w.compile(); !r) return Error{r.error()};
   std::unique_ptr<Parallel> parallel;
-  if (threads)
-    parallel = std::make_unique<HostParallel>(std::move(threads));
+  if (threads > 0)
+    parallel = std::make_unique<TbbParallel>(threads);
   else
     parallel = w.parallel->another();
   auto impl = std::make_unique<Impl>(w.options, std::move(parallel));

@@ -165,6 +165,7 @@ WorldSize World::size() const {
   s.matrix_nonzeros = w.system().kkt().nonzeros();
   s.factor_nonzeros = w.methods.chosen().factor_nonzeros();
   s.engine_bytes = w.assembly().memory_bytes();
+  s.table_bytes = w.system().table_bytes();
   return s;
 }
 

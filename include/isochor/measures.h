@@ -20,7 +20,8 @@ struct WorldSize {
   Index nodes = 0, displacement_unknowns = 0, multipliers = 0;
   Index matrix_size = 0;  // displacements and the rows kept in the saddle point
   std::int64_t matrix_nonzeros = 0, factor_nonzeros = 0;
-  std::size_t engine_bytes = 0;
+  // Of slots and gather lists, and of tables that clones share with each other [bytes].
+  std::size_t engine_bytes = 0, table_bytes = 0;
 };
 
 // Volume of a body, or of one of its regions, now and at rest.

@@ -178,9 +178,8 @@ class ISOCHOR_API World {
   Result<void> reset();
   // Another world with the same scene, state and settings, which goes on with the same bits; what nobody
   // changes (tables of the system, the ordering of its factors) is shared. Ids of this one are good there as
-  // well. Callbacks stay behind, the log comes along. With threads of its own where they are given.
-  Result<World> clone() const;
-  Result<World> clone(std::shared_ptr<ThreadPool> threads) const;
+  // well. Callbacks stay behind, the log comes along. `threads`: of its own, 0: as many as this world has.
+  Result<World> clone(int threads = 0) const;
 
   void on_progress(std::function<void(const ProgressInfo&)> callback);
   // Asked many times a second while a step works, from any of the world's threads; true cancels the step,

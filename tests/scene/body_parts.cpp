@@ -62,7 +62,7 @@ TEST_CASE("a scene file puts a surface into a lattice, and the surface moves wit
   REQUIRE(world.advance(1).status == StepStatus::converged);
   // Corners of the cube are nodes of the lattice: they go where the nodes go.
   const auto x = world.positions(BodyId{0}), rest = world.rest_positions(BodyId{0});
-  for (const PointInBody& p : surface.points) {
+  for (const EmbeddedPoint& p : surface.points) {
     Vec3 here{}, start{};
     for (std::size_t a = 0; a < 8; ++a) {
       here += p.weights[a] * x[static_cast<std::size_t>(p.nodes[a])];

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "engine/base/base.h"
+#include "isochor/batch.h"
 #include "support/worlds.h"
 
 using namespace test;
@@ -397,4 +398,47 @@ TEST_CASE("views of positions stay good while only numbers change", "[living]") 
   (void)b.world.save();
   value(b.world.load(b.world.save()));
   CHECK(view.data() == b.world.positions(b.first).data());
+}
+
+TEST_CASE("worlds of a batch have the bits that they have alone", "[living][batch]") {
+  Built b = build({});
+  run(b.world, 2);
+  isochor::WorldBatch batch = value(isochor::WorldBatch::create(b.world, 5, 2));
+  std::vector<World> alone;
+  std::vector<double> amounts;
+  for (int w = 0; w < 5; ++w) {
+    alone.push_back(value(b.world.clone()));
+    amounts.push_back(0.5 * w);
+  }
+  value(batch.set_amounts(b.force, amounts));
+  value(batch[3].set_material(b.first, "", neo_hookean(4e4, 0.5)));
+  value(alone[3].set_material(b.first, "", neo_hookean(4e4, 0.5)));
+  for (std::size_t w = 0; w < 5; ++w) value(alone[w].set_amount(b.force, amounts[w]));
+  for (int k = 0; k < 3; ++k) {
+    const auto reports = batch.advance(0.01);
+    REQUIRE(reports.size() == 5);
+    for (std::size_t w = 0; w < 5; ++w) {
+      CHECK(reports[w].status == isochor::StepStatus::converged);
+      must_advance(alone[w], 0.01);
+    }
+  }
+  for (std::size_t w = 0; w < 5; ++w)
+    CHECK(batch[static_cast<Index>(w)].state_hash() == alone[w].state_hash());
+  // All at once.
+  const std::size_t nodes = b.world.positions(b.first).size();
+  std::vector<Vec3> x(5 * nodes);
+  value(batch.positions(b.first, x));
+  for (std::size_t w = 0; w < 5; ++w) CHECK(x[w * nodes + 7] == alone[w].positions(b.first)[7]);
+  CHECK_THAT(refusal(batch.velocities(b.first, std::span(x).first(3))), ContainsSubstring("room for 3"));
+  CHECK_THAT(refusal(batch.set_amounts(b.force, std::vector<double>{1})), ContainsSubstring("one a world"));
+  CHECK_THAT(refusal(batch.set_amounts(b.contact, amounts)), ContainsSubstring("no amount"));
+  CHECK_THAT(refusal(isochor::WorldBatch::create(b.world, 0)), ContainsSubstring("0 worlds"));
+  // One begins again, the others go on.
+  const std::uint64_t before = batch[1].state_hash();
+  value(batch.reset(std::vector<std::uint8_t>{1, 0, 0, 0, 0}));
+  CHECK(batch[0].time() == 0);
+  CHECK(batch[1].state_hash() == before);
+  const auto memory = batch.memory();
+  CHECK(memory.each > 1000);
+  CHECK(memory.shared > 1000);
 }

@@ -410,6 +410,7 @@ Ordering best_ordering(const SymmetricPattern& pattern, OrderingMethod method) {
   if (method != OrderingMethod::best) return order_unknowns(pattern, method);
   if (pattern.base && pattern.base->pattern.size > 0 && same_unknowns(pattern, pattern.base->pattern)) {
     OrderingBase& base = *pattern.base;
+    const std::lock_guard lock(base.mutex);
     if (base.operations == 0) base.ordering = best_of_all(base.pattern, base.operations);
     if (operations_of(pattern, base.ordering) <= little_more * base.operations) return base.ordering;
   }
@@ -449,6 +450,20 @@ FrontTree front_tree(const SymmetricPattern& pattern, const Ordering& ordering) 
   find_jobs(t);
   place_updates(t);
   return t;
+}
+
+std::shared_ptr<const FrontTree> shared_front_tree(const SymmetricPattern& pattern, OrderingMethod method) {
+  const auto made = [&] {
+    return std::make_shared<const FrontTree>(front_tree(pattern, best_ordering(pattern, method)));
+  };
+  if (!pattern.analysis) return made();
+  SharedAnalysis& shared = *pattern.analysis;
+  const std::lock_guard lock(shared.mutex);
+  if (!shared.tree || shared.method != method) {
+    shared.tree = made();
+    shared.method = method;
+  }
+  return shared.tree;
 }
 
 }  // namespace isochor

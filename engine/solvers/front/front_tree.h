@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "engine/base/base.h"
@@ -52,5 +54,13 @@ double operations_of(const SymmetricPattern& pattern, const Ordering& ordering);
 // than there, no other is looked for.
 Ordering best_ordering(const SymmetricPattern& pattern, OrderingMethod method = OrderingMethod::best);
 FrontTree front_tree(const SymmetricPattern& pattern, const Ordering& ordering);
+
+// The tree of a pattern that several solvers work with, maybe at once: made by the first that asks.
+struct SharedAnalysis {
+  std::mutex mutex;
+  OrderingMethod method = OrderingMethod::best;
+  std::shared_ptr<const FrontTree> tree;
+};
+std::shared_ptr<const FrontTree> shared_front_tree(const SymmetricPattern& pattern, OrderingMethod method);
 
 }  // namespace isochor

@@ -41,7 +41,7 @@ void MultifrontalSolver::set_scale(std::span<const double> scale) {
 }
 
 void MultifrontalSolver::begin_solve() {
-  const bool single = options_.single_precision && tree_.operations >= options_.single_from;
+  const bool single = options_.single_precision && tree_->operations >= options_.single_from;
   lowest_ = single ? Rung::single : Rung::full;
 }
 
@@ -70,10 +70,10 @@ FactorReport MultifrontalSolver::analyze_pattern() {
   if (!p.multiplier.empty())
     expected_ = static_cast<Index>(std::count(p.multiplier.begin(), p.multiplier.end(), std::uint8_t{1}));
   pivoting_analyzed_ = false;
-  tree_ = front_tree(p, best_ordering(p, options_.ordering));
+  tree_ = shared_front_tree(p, options_.ordering);
   begin_solve();
-  single_.set_tree(tree_);
-  full_.set_tree(tree_);
+  single_.set_tree(*tree_);
+  full_.set_tree(*tree_);
   narrow_.resize(n);
   copy_.resize(n);
   probe_solution_.resize(n);
@@ -84,10 +84,10 @@ FactorReport MultifrontalSolver::analyze_pattern() {
     state = state * 1664525u + 1013904223u;
     b = 0.5 + static_cast<double>(state >> 8) / double{1 << 24} * ((state >> 31) != 0u ? 1 : -1);
   }
-  report.factor_nonzeros = tree_.panel_start.back();
+  report.factor_nonzeros = tree_->panel_start.back();
   // In double precision: what may be needed.
-  report.memory = 8.0 * static_cast<double>(tree_.panel_start.back() + tree_.workspace) +
-                  static_cast<double>(tree_.entry.size()) * (sizeof(std::int64_t) + sizeof(std::uint32_t));
+  report.memory = 8.0 * static_cast<double>(tree_->panel_start.back() + tree_->workspace) +
+                  static_cast<double>(tree_->entry.size()) * (sizeof(std::int64_t) + sizeof(std::uint32_t));
   return report;
 }
 
@@ -98,7 +98,7 @@ FactorReport MultifrontalSolver::factor_values() {
 // Climbs until a rung is good enough.
 FactorReport MultifrontalSolver::factor_from(Rung rung) {
   FactorReport report;
-  report.factor_nonzeros = tree_.panel_start.back();
+  report.factor_nonzeros = tree_->panel_start.back();
   for (rung_ = rung; rung_ != Rung::pivoting; rung_ = rung_ == Rung::single ? Rung::full : Rung::pivoting) {
     target_residual = rung_ == Rung::single ? enough_for_single : rounding_level;
     const bool whole = factor_fronts(report);

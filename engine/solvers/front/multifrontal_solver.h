@@ -40,7 +40,7 @@ class MultifrontalSolver final : public DirectSolver {
 
   enum class Rung : std::uint8_t { single, full, pivoting };
   Rung rung() const { return rung_; }
-  const FrontTree& tree() const { return tree_; }
+  const FrontTree& tree() const { return *tree_; }
 
  protected:
   FactorReport analyze_pattern() override;
@@ -58,7 +58,7 @@ class MultifrontalSolver final : public DirectSolver {
   std::unique_ptr<LinearSolver> pivoting_;
   MultifrontalOptions options_;
   RowLoop loop_;
-  FrontTree tree_;
+  std::shared_ptr<const FrontTree> tree_ = std::make_shared<const FrontTree>();
   FrontFactor<float> single_;
   FrontFactor<double> full_;
   bool pivoting_analyzed_ = false;
