@@ -16,7 +16,7 @@
 
 namespace isochor {
 
-double Amount::value(double t) const {
+double Amount::plain_value(double t) const {
   if (!held_) return evaluate(curve_, t);
   if (t >= t1_ || t1_ <= t0_) return to_;
   if (t <= t0_) return from_;

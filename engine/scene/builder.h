@@ -29,8 +29,10 @@ class Builder;
 class ISOCHOR_API Amount {
  public:
   explicit Amount(Curve curve) : curve_(std::move(curve)) {}
-  double value(double t) const;
+  double value(double t) const { return shift_ == 0 ? plain_value(t) : plain_value(t) + shift_; }
   void set(double value) { pending_ = value; }
+  // Added to all values, for differences; zero otherwise.
+  void shift(double by) { shift_ = by; }
   // Announces the increment [t0, t1]; a pending value ramps over it.
   void begin(double t0, double t1);
   // Whether a host has set it, and whether what was set is valid by now.
@@ -46,9 +48,12 @@ class ISOCHOR_API Amount {
   static bool take(std::span<const double>& in);
 
  private:
+  double plain_value(double t) const;
+
   Curve curve_;
   bool held_ = false;  // from_/to_ replace the curve
   double from_ = 0, to_ = 0, t0_ = 0, t1_ = 0;
+  double shift_ = 0;
   std::optional<double> pending_;
 };
 

@@ -18,6 +18,20 @@ class SaddlePoint {
   SaddleReport solve(const SaddleProblem& problem, const SaddleOptions& options, std::span<Vec3> x,
                      std::span<double> lambda);
 
+  // Derivatives at a solution: evaluates and factors there as it is, nothing mended; then, as often as
+  // wanted, steps and multipliers with which other problems would be solved to first order. False: the report
+  // says why, without a reason where the method has no factors.
+  virtual bool linearize(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
+                         SaddleReport& report) {
+    (void)p, (void)x, (void)lambda, (void)report;
+    return false;
+  }
+  virtual bool respond(const SaddleProblem& p, std::span<Vec3> dx, std::span<double> lambda,
+                       SaddleReport& report) {
+    (void)p, (void)dx, (void)lambda, (void)report;
+    return false;
+  }
+
   // Asked often, from any thread that works; true stops the solve.
   void set_interrupt(std::function<bool()> asked);
   // Called after every iteration: iteration number and the two residuals.

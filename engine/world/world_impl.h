@@ -2,6 +2,7 @@
 // Not a public header.
 #pragma once
 
+#include "engine/scene/embedding.h"
 #include "engine/step/controller.h"
 #include "engine/world/description.h"
 #include "isochor/world.h"
@@ -73,6 +74,11 @@ struct World::Impl {
   std::vector<double> row_residuals();
   std::vector<Vec3> momenta();  // mass times velocity of every node [kg m/s]
   double law_energy();          // [J]
+  // As World::reaction(), at another state, whose reactions are residual forces.
+  std::array<Vec3, 2> reaction_of(Index effect, const State& at_state) const;
+  // derivatives.cpp
+  struct Derivatives;
+  Result<Response> derivative(Derivatives& d, Amount* amount, PointInBody point, const Vec3& force);
 
   // checkpoint.cpp
   const std::vector<ScenePart>& scene_parts();

@@ -133,14 +133,7 @@ std::array<Vec3, 2> World::reaction(EffectId effect) const {
   if (auto r = check(effect); !r && w.options.log) w.options.log("reaction: " + r.error());
   if (!check(effect) || !w.ready()) return sum;
   if (i >= w.instances.size() || !w.instances[i]) return sum;
-  sum = w.instances[i]->reaction({w.system(), w.state});
-  if (i >= w.held_by.size()) return sum;
-  for (const HeldDirection& h : w.held_by[i]) {
-    const Vec3 f = dot(h.direction, w.state.reactions[at(h.node)]) * h.direction;
-    sum[0] += f;
-    sum[1] += cross(w.state.x[at(h.node)], f);
-  }
-  return sum;
+  return w.reaction_of(static_cast<Index>(i), w.state);
 }
 
 double World::constitutive_residual() const {

@@ -17,6 +17,7 @@
 
 #include "isochor/abi.h"
 #include "isochor/bodies.h"
+#include "isochor/derivatives.h"
 #include "isochor/effects/effect.h"
 #include "isochor/export.h"
 #include "isochor/host.h"
@@ -160,6 +161,10 @@ class ISOCHOR_API World {
   // Refused where the nodes lie on one line or in one point, at rest or now: that has no rotation. Nodes of
   // surfaces count by the area they stand for, those of other selections equally.
   Result<Orientation> orientation(const Selection& where) const;
+  // Derivatives of the equilibrium that the state is at, by each input: positions, gauges, reactions. Of
+  // dynamics it is that without inertia. One factorization, two solves an input. Refused where the matrix is
+  // singular, and with methods that have no factors of all of it.
+  Result<std::vector<Response>> derivatives(std::span<const ResponseInput> inputs);
   // Largest |phi - target - C lambda| of all rows, relative to their measure.
   double constitutive_residual() const;
   WorldSize size() const;

@@ -22,7 +22,15 @@ class Newton : public SaddlePoint {
   Newton(std::shared_ptr<const System> system, const Parallel& parallel,
          std::unique_ptr<LinearSolver> solver);
 
+  bool linearize(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> lambda,
+                 SaddleReport& report) override;
+  bool respond(const SaddleProblem& p, std::span<Vec3> dx, std::span<double> lambda,
+               SaddleReport& report) override;
+
  protected:
+  // linear_response.cpp
+  bool factor_as_is(const SaddleProblem& p, SaddleReport& report);
+  bool step_as_is(const SaddleProblem& p, SaddleReport& report);
   SaddleReport solve_from_here(const SaddleProblem& problem, const SaddleOptions& options) override;
 
   void begin_search();  // of a solve

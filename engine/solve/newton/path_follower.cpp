@@ -23,18 +23,8 @@ double PathFollower::product(const PathVector& a, const PathVector& b) const {
 
 // Evaluates and factors at now_ and t as it is and leaves the Newton step at fixed t in correction_.
 bool PathFollower::factor_here(const ProblemAt& problem_at, double t, SaddleReport& report) {
-  const SaddleProblem p = problem_at(t);
-  if (!all_finite(p)) {
-    report.status = SaddleStatus::not_finite;
-    return false;
-  }
-  slots().set_increment(p.increment, p.memory);
-  evaluate_here(p);
-  evaluator_.find_gap(p, now_.x, gap_);
-  if (system().has_bounds()) hold_rows(Rows::later);
-  if (!system().laws().empty()) evaluator_.apply_laws(p, now_.lambda, true);
-  matrix_.factor_exact(report);  // the inertia is reported, not mended
-  if (!report.message.empty() || !direction(report)) {
+  if (!factor_as_is(problem_at(t), report)) return false;
+  if (!direction(report)) {
     report.status = SaddleStatus::singular;
     return false;
   }
@@ -47,13 +37,7 @@ bool PathFollower::factor_here(const ProblemAt& problem_at, double t, SaddleRepo
 // d(x, lambda)/dt at fixed residual, into slope_: the difference of the Newton steps for the loads at t +
 // step and at t (correction_), both with the factors at hand.
 bool PathFollower::slope(const ProblemAt& problem_at, double t, double step, SaddleReport& report) {
-  const SaddleProblem p = problem_at(t + step);
-  evaluator_.evaluate(p, Want::gradient, Definiteness::exact, now_);
-  evaluator_.find_gap(p, now_.x, gap_);
-  if (!direction(report)) {
-    report.status = SaddleStatus::singular;
-    return false;
-  }
+  if (!step_as_is(problem_at(t + step), report)) return false;
   for (std::size_t i = 0; i < step_.dx.size(); ++i)
     slope_.x[i] = (1 / step) * (step_.dx[i] - correction_.x[i]);
   for (std::size_t r = 0; r < now_.lambda.size(); ++r)
