@@ -70,6 +70,18 @@ struct SurfaceForces {
   std::vector<double> area;      // at rest, that the node stands for [m^2]; 0: the effect is not there
 };
 
+// A point of a contact that presses; nodes are those of the scene.
+struct PressingPoint {
+  Index node = -1;        // where it is one
+  Index of = -1;          // a node of the body that it is of, -1: a rigid body, whose name it is
+  Index partner_of = -1;  // likewise
+  std::string name, partner;
+  Vec3 position{};
+  double gap = 0;
+  Vec3 normal{}, friction{};
+  double force = 0, area = 0;
+};
+
 // The live part of an effect: what a host can set and read.
 class EffectInstance {
  public:
@@ -85,6 +97,10 @@ class EffectInstance {
   virtual std::array<Vec3, 2> reaction(const GaugeContext& context) const {
     (void)context;
     return {};
+  }
+  virtual void pressing_points(const GaugeContext& context, std::vector<PressingPoint>& out) const {
+    (void)context;
+    (void)out;
   }
   // Pressure multipliers that live at nodes, by scene node [Pa]; others are left as they are.
   virtual void node_multipliers(const GaugeContext& context, std::span<double> pressure) const {

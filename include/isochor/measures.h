@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "isochor/ids.h"
 #include "isochor/types.h"
 
 namespace isochor {
@@ -44,6 +45,28 @@ struct BodyMeasures : VolumeMeasures {
   Vec3 linear_momentum{};               // [kg m/s]
   Vec3 angular_momentum{};              // about the origin [kg m^2/s]
   std::vector<VolumeMeasures> regions;  // in the order of the mesh
+};
+
+// A point of a contact that presses. Forces are on the body that the point is of; its partner has the
+// opposite.
+struct ContactPoint {
+  EffectId effect{};
+  std::string body, partner;  // of the point and of what it touches: a body, a rigid body or an obstacle
+  Index node = -1;            // of the body's mesh, where the point is one of its nodes
+  Vec3 position{};            // [m]
+  double gap = 0;             // negative within a layer that gives way [m]
+  Vec3 normal{};              // away from the partner
+  Vec3 normal_force{};        // [N]
+  Vec3 friction{};            // [N]
+  double area = 0;            // at rest, that it stands for; 0: edges [m^2]
+};
+
+// What two partners of all contacts do to each other.
+struct ContactPair {
+  std::string body, partner;
+  Vec3 force{};       // on the body, friction included [N]
+  double normal = 0;  // sum of the magnitudes of the normal forces [N]
+  Index points = 0;
 };
 
 // Energies of the whole scene now. Potentials are those of the loads as they are now, zero at rest positions;

@@ -152,6 +152,10 @@ class ISOCHOR_API World {
   // Sum of the support forces [N] and their moment about the origin [N m] of an effect that prescribes
   // positions.
   std::array<Vec3, 2> reaction(EffectId effect) const;
+  // Points of contacts that press, in the order of effects and of their rows; and the sums of every two
+  // partners, in the order in which they are met.
+  std::vector<ContactPoint> contacts() const;
+  std::vector<ContactPair> contact_pairs() const;
   double elastic_energy() const;  // [J], distortion plus compliance
   double kinetic_energy() const;  // [J]
   Energies energies() const;

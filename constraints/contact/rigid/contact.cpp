@@ -22,8 +22,13 @@ namespace {
 class ContactInstance final : public EffectInstance {
  public:
   ContactInstance(std::shared_ptr<const ContactPool> pool, std::shared_ptr<const ContactRows> rows,
-                  Index row_pool, std::shared_ptr<LivePose> pose)
-      : pool_(std::move(pool)), rows_(std::move(rows)), row_pool_(row_pool), pose_(std::move(pose)) {}
+                  Index row_pool, std::shared_ptr<LivePose> pose, std::string touching, std::string partner)
+      : pool_(std::move(pool)),
+        rows_(std::move(rows)),
+        row_pool_(row_pool),
+        pose_(std::move(pose)),
+        touching_(std::move(touching)),
+        partner_(std::move(partner)) {}
 
   LivePose* pose() override { return pose_.get(); }
 
@@ -50,6 +55,29 @@ class ContactInstance final : public EffectInstance {
       sum.force -= frame.A * f;
     }
     add_gauges(rows_->name(), sum, out);
+  }
+
+  void pressing_points(const GaugeContext& c, std::vector<PressingPoint>& out) const override {
+    const RigidGeometry& geometry = pool_->geometry();
+    const ContactFrame frame = geometry.frame(c.state.t, c.state.x);
+    const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
+    const auto memory = memory_of(c);
+    for (Index s = 0; s < pool_->stencils(); ++s) {
+      if (!(lambda[at(s)] < 0)) continue;
+      PressingPoint p;
+      if (!geometry[s].rider) p.node = p.of = pool_->nodes()[s][0];
+      p.name = touching_;
+      p.partner = partner_;
+      p.position = geometry.position(s, c.state.x);
+      p.gap = geometry.gap(s, frame, c.state.x);
+      const Distance d = distance_to(geometry.shape(), geometry.own_place(s, frame, c.state.x));
+      const Vec3 slope = transposed_times(frame.inverse, d.normal);
+      p.normal = direction(slope);
+      p.force = -lambda[at(s)] * norm(slope);
+      if (pool_->memory() > 0) p.friction = -1.0 * (frame.A * pool_->kept_pull(s, memory));
+      p.area = rows_->area[at(s)];
+      out.push_back(std::move(p));
+    }
   }
 
   bool surface_forces(const GaugeContext& c, SurfaceForces& f) const override {
@@ -80,6 +108,7 @@ class ContactInstance final : public EffectInstance {
   std::shared_ptr<const ContactRows> rows_;
   Index row_pool_;
   std::shared_ptr<LivePose> pose_;  // null: a free rigid body
+  std::string touching_, partner_;  // names of rigid bodies; the partner may be the obstacle of the contact
 };
 
 class ContactEffect final : public EffectSource {
@@ -140,7 +169,9 @@ class ContactEffect final : public EffectSource {
     if (auto r = find_overlap(builder, *pool, *rows); !r) return Error{r.error()};
     rows->stencil_pool = builder.add_stencils(pool);
     const Index row_pool = builder.add_rows(rows);
-    return std::unique_ptr<EffectInstance>(std::make_unique<ContactInstance>(pool, rows, row_pool, pose));
+    return std::unique_ptr<EffectInstance>(
+        std::make_unique<ContactInstance>(pool, rows, row_pool, pose, def_.rigid,
+                                          def_.against.empty() ? "obstacle of " + def_.name : def_.against));
   }
 
  private:

@@ -48,6 +48,29 @@ Result<EdgeContact> EdgeContact::build(Builder& builder, const SurfaceContactDef
   return out;
 }
 
+void EdgeContact::pressing_points(const GaugeContext& c, std::vector<PressingPoint>& out) const {
+  if (!rows_) return;
+  const Index place = rows_->stencil_pool;
+  const auto& pool = static_cast<const EdgeContactPool&>(*c.system.parts().stencil_pools[at(place)]);
+  const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
+  const auto memory = c.system.stencil_memory(place, std::span<const double>(c.state.extra));
+  for (Index s = 0; s < pool.stencils(); ++s) {
+    if (!pool.geometry().meets(s) || !(lambda[at(s)] < 0)) continue;
+    const EdgeGap gap = pool.geometry().gap(s, c.state.x);
+    const Vec3 push = pool.geometry().push(s, lambda[at(s)], c.state.x);
+    PressingPoint p;
+    const auto nodes = pool.nodes()[s];
+    p.of = nodes[0];
+    p.partner_of = nodes[kEdgeNodes];
+    p.position = (1 - gap.place[0]) * c.state.x[at(nodes[0])] + gap.place[0] * c.state.x[at(nodes[1])];
+    p.gap = gap.distance - pool.setup().offset;
+    p.force = norm(push);
+    p.normal = direction(push);
+    p.friction = -1.0 * pool.kept_pull(SurfaceFrames{c.state.x, c.state.x}, s, memory);
+    out.push_back(std::move(p));
+  }
+}
+
 ContactTotals EdgeContact::totals(const GaugeContext& c) const {
   ContactTotals sum;
   if (!rows_) return sum;

@@ -16,6 +16,7 @@ class EdgeContact {
 
   // Of the first side; no area, pressure or depth.
   ContactTotals totals(const GaugeContext& context) const;
+  void pressing_points(const GaugeContext& context, std::vector<PressingPoint>& out) const;
 
  private:
   std::shared_ptr<const ContactRows> rows_;  // null: there are no edges

@@ -73,6 +73,30 @@ class SurfaceContactInstance final : public EffectInstance {
     add_gauges(rows_->name(), sum, out);
   }
 
+  void pressing_points(const GaugeContext& c, std::vector<PressingPoint>& out) const override {
+    const auto& pool = pool_of(c);
+    const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
+    const auto memory = memory_of(c);
+    for (Index s = 0; s < pool.stencils(); ++s) {
+      if (!pool.geometry().meets(s) || !(lambda[at(s)] < 0)) continue;
+      const PatchPoint near = pool.geometry().nearest(s, c.state.x);
+      if (!std::isfinite(near.distance)) continue;
+      const SurfacePoint& point = pool.setup().surface->points()[at(s)];
+      PressingPoint p;
+      p.of = point.node[0];
+      if (point.nodes == 1) p.node = point.node[0];
+      p.partner_of = pool.nodes()[s][point.nodes];
+      p.position = point.position(c.state.x);
+      p.gap = near.distance - pool.setup().offset;
+      p.normal = near.normal;
+      p.force = -lambda[at(s)];
+      p.friction = -1.0 * pool.kept_pull(SurfaceFrames{c.state.x, c.state.x}, s, memory);
+      p.area = 0.5 * rows_->area[at(s)];
+      out.push_back(std::move(p));
+    }
+    edges_.pressing_points(c, out);
+  }
+
   bool surface_forces(const GaugeContext& c, SurfaceForces& f) const override {
     const auto& pool = pool_of(c);
     const auto lambda = std::span(c.state.lambda).subspan(at(c.system.first_row(row_pool_)));
