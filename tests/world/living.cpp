@@ -1,6 +1,7 @@
 // Worlds that change while they live. The judge: a world that is changed before it moves has the bits of one
 // that was built that way; what a change does not touch keeps its bits; a change that fails leaves no trace.
 #include <functional>
+#include <random>
 
 #include "engine/base/base.h"
 #include "isochor/batch.h"
@@ -441,4 +442,77 @@ TEST_CASE("worlds of a batch have the bits that they have alone", "[living][batc
   const auto memory = batch.memory();
   CHECK(memory.each > 1000);
   CHECK(memory.shared > 1000);
+}
+
+// Changes in any order, made of a seed: the world is asked after each for what must hold whatever they are.
+TEST_CASE("random changes leave worlds whole", "[living]") {
+  for (unsigned seed = 1; seed <= 24; ++seed) {
+    CAPTURE(seed);
+    std::mt19937 random(seed);
+    const auto pick = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+    const std::array<Element, 3> elements{Element::tet4, Element::tet4_edge_smoothed, Element::tet10};
+    const std::array<isochor::SchemePtr, 4> schemes{isochor::implicit_euler(), isochor::bdf2(),
+                                                    isochor::generalized_alpha(), isochor::statics()};
+    Scene s;
+    s.element = elements[static_cast<std::size_t>(pick(3))];
+    s.scheme = schemes[static_cast<std::size_t>(pick(4))];
+    s.second = false;
+    Built b = build(s);
+    std::vector<BodyId> guests;
+    std::vector<EffectId> springs, floors;
+    for (int k = 0; k < 14; ++k) {
+      switch (pick(8)) {
+        case 0: {
+          const double x = 3.0 + 2 * k;
+          const BodyId guest = add_body(b.world, block({x, 0, 0}, {x + 1, 1, 1}, {1, 1, 2}), s.element,
+                                        neo_hookean(1e5, 0.4), 900, "guest " + std::to_string(k));
+          // Whatever the scheme, something holds it.
+          springs.push_back(hold(b.world, guest, {"x0"}, {}, {}, isochor::Curve::constant(1)));
+          guests.push_back(guest);
+          break;
+        }
+        case 1:
+          if (!guests.empty()) {
+            value(b.world.remove(springs.back()));
+            if (!floors.empty()) value(b.world.remove(floors.back()));
+            value(b.world.remove(guests.back()));
+            floors.clear();
+            springs.pop_back();
+            guests.pop_back();
+          }
+          break;
+        case 2:
+          if (floors.empty() && !guests.empty())
+            floors.push_back(value(b.world.add(floor_contact(guests.back(), s))));
+          break;
+        case 3:
+          value(b.world.set_material(b.first, "", neo_hookean(2e4 * (1 + pick(5)), 0.5)));
+          break;
+        case 4:
+          value(b.world.set_gravity({0.1 * pick(5), 0, -1.0 * pick(10)}));
+          break;
+        case 5:
+          value(b.world.replace(b.force, pull(b.first, pick(7) - 3)));
+          break;
+        case 6:
+          value(b.world.add_force(b.first, pick(8), {0, 0.1 * pick(4), 0}));
+          break;
+        default:
+          value(b.world.set_pose(b.held, {.position = {0.001 * pick(9), 0, 0}}));
+      }
+      if (pick(3) == 0) continue;  // several changes at once
+      must_advance(b.world, 0.01);
+      for (const double v : motion(b.world)) REQUIRE(std::isfinite(v));
+      // A clone, and a state that is saved and loaded, are this world.
+      World copy = value(b.world.clone());
+      REQUIRE(copy.state_hash() == b.world.state_hash());
+      value(copy.load(b.world.save()));
+      must_advance(copy, 0.01);
+      must_advance(b.world, 0.01);
+      REQUIRE(copy.state_hash() == b.world.state_hash());
+      REQUIRE(b.world.body_count() == 1 + static_cast<Index>(guests.size()));
+    }
+    value(b.world.reset());
+    for (const double v : motion(b.world)) REQUIRE(std::isfinite(v));
+  }
 }
