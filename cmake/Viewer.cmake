@@ -40,6 +40,6 @@ add_custom_command(
 
 file(GLOB _view_sources CONFIGURE_DEPENDS "${_view_dir}/*.cpp")
 add_library(isochor_view STATIC ${_view_sources} "${_view_template}")
-target_include_directories(isochor_view PUBLIC "${_view_dir}" "${_view_dir}/../include")
+target_include_directories(isochor_view PUBLIC $<BUILD_INTERFACE:${_view_dir}> $<BUILD_INTERFACE:${_view_dir}/../include>)
 target_compile_features(isochor_view PUBLIC cxx_std_20)
 target_link_libraries(isochor_view PRIVATE ZLIB::ZLIB)
