@@ -60,5 +60,6 @@ py::array array_of(const Vec3& vector);
 void bind_meshes(py::module_& module);
 void bind_worlds(py::module_& module);
 void bind_scenes(py::module_& module);
+void bind_catalog(py::module_& module);
 
 }  // namespace isochor::python

@@ -27,6 +27,7 @@ PYBIND11_MODULE(_isochor, module) {
   bind_meshes(module);
   bind_worlds(module);
   bind_scenes(module);
+  bind_catalog(module);
 }
 
 }  // namespace isochor::python
