@@ -105,6 +105,11 @@ def effect_types() -> dict[str, str]:
     return {lists[name]: name for name in _isochor.effect_lists()}
 
 
+def list_of(kind: str) -> str:
+    """The list of a scene file that holds effects of a kind."""
+    return effect_types()[kind]
+
+
 def unknown(what: str, name: str, known: Iterable[str]) -> Error:
     near = difflib.get_close_matches(name, list(known), 1)
     hint = f', did you mean "{near[0]}"?' if near else "; it knows " + ", ".join(known)

@@ -259,7 +259,7 @@ class World:
         if keys["name"] in taken:
             raise Error(f'add: an effect has the name "{keys["name"]}" already; give another')
         named = Effect(effect.kind, keys, effect.body)
-        core_id = self._core.add(effect.kind, _keys.text(self._with_body(named)))
+        core_id = self._core.add(_keys.list_of(effect.kind), _keys.text(self._with_body(named)))
         live = LiveEffect(self, core_id, named)
         self._effects.append(live)
         return live
@@ -481,7 +481,7 @@ class World:
             body_id = self._core.add_body(mesh._core, _keys.text(described))
             self._bodies.append(Body(self, body_id, described["name"], described, mesh))
         for kind, keys, amount in state["effects"]:
-            effect_id = self._core.add(kind, _keys.text(keys))
+            effect_id = self._core.add(_keys.list_of(kind), _keys.text(keys))
             effect = LiveEffect(self, effect_id, Effect(kind, keys))
             object.__setattr__(effect, "_amount", amount)
             self._effects.append(effect)

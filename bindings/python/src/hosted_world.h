@@ -6,6 +6,7 @@
 
 #include "interruption.h"
 #include "isochor/world.h"
+#include "parts.h"
 
 namespace isochor::python {
 
@@ -34,6 +35,9 @@ class HostedWorld {
   // From any thread, at any time.
   void cancel() { world_->cancel(); }
 
+  // What effects that are added may name.
+  PartNames& names() { return names_; }
+
   // None: no callback.
   void set_progress(const py::object& callback);
 
@@ -60,6 +64,7 @@ class HostedWorld {
   void pass_on_log();
 
   std::optional<World> world_;
+  PartNames names_;
   std::atomic<bool> busy_{false};
   std::atomic<std::thread::id> user_{};
   std::atomic<const char*> running_{nullptr};
