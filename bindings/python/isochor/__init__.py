@@ -13,9 +13,17 @@ SI units throughout. docs/python.md starts from zero; keyword arguments of effec
 of docs/scenes.md.
 """
 
+import os as _os
+from pathlib import Path as _Path
+
+# An installed package has the meshes of the library's scenes beside it.
+if (_Path(__file__).parent / "scenes").is_dir():
+    _os.environ.setdefault("ISOCHOR_SCENES", str(_Path(__file__).parent / "scenes"))
+
 from . import _isochor
 from . import effects as _effects
 from . import materials as _materials
+from .batch import WorldBatch
 from .effects import *
 from .environment import Box, Environment
 from .errors import Cancelled, Error, NotConverged
@@ -66,6 +74,7 @@ __all__ = [
     "Study",
     "Volume",
     "World",
+    "WorldBatch",
     "box_mesh",
     "library",
     "read_mesh",

@@ -38,6 +38,11 @@ class StepReport:
     force_residual: float = 0.0
     row_residual: float = 0.0
     linear_residual: float = 0.0
+    compile_work: str = "nothing"
+    """What changes that waited for this step cost: ``nothing``, ``numbers`` (the next step makes new factors, as
+    every step does) or ``structure`` (patterns and the ordering are new as well)."""
+    compile_seconds: float = 0.0
+    """[s], without the ordering, which counts as ``seconds["analyze"]``."""
     iterations: int = 0
     """Newton iterations."""
     corrections: int = 0
@@ -184,6 +189,8 @@ class Size:
     matrix_nonzeros: int
     factor_nonzeros: int
     engine_bytes: int
+    table_bytes: int
+    """Of tables that clones share."""
 
 
 @dataclass(frozen=True)

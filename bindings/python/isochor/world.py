@@ -77,6 +77,17 @@ class Body:
         """Positions minus those at rest [m], shape (n, 3); a new array."""
         return self.positions - self.rest_positions
 
+    def set_material(self, material: Material, region: str | None = None) -> None:
+        """Another material from the next step on, in a region or, by default, where the material says.
+
+        Costs new numbers and no new ordering. The density of the body changes where the material names one.
+        """
+        self._world._set_material(self, material, material.region if region is None else region)
+
+    def remove(self) -> None:
+        """Takes the body out of its world; refused while an effect names it."""
+        self._world.remove(self)
+
     def measures(self) -> BodyMeasures:
         """Volume, mass, center, momentum now, of the body and its regions."""
         return self._world.measures(self)
@@ -92,8 +103,9 @@ class Body:
 class LiveEffect:
     """An effect of a world; made by ``World.add``.
 
-    Its keys read as attributes: ``air.control``, ``floor.friction``. What it reports reads by name too:
-    ``air.pressure`` and ``air.volume`` of a cavity, ``rope.tension`` of a cable; ``gauges`` has all of it.
+    Its keys are attributes: ``floor.friction`` reads one, ``floor.friction = 0.3`` puts an effect with that key
+    changed in its place before the next step. What it reports reads by name too: ``air.pressure`` and ``air.volume``
+    of a cavity, ``rope.tension`` of a cable; ``gauges`` has all of it.
     """
 
     def __init__(self, world: World, core_id: Any, description: Effect) -> None:
@@ -145,8 +157,24 @@ class LiveEffect:
     @property
     def reaction(self) -> Reaction:
         """Force and moment that a support takes up."""
-        force, moment = self._world._core.reaction(self._id)
+        force, moment = self._world._ready().reaction(self._id)
         return Reaction(force, moment)
+
+    def set_pose(self, position: ArrayLike = (0.0, 0.0, 0.0), turn: ArrayLike = (0.0, 0.0, 0.0)) -> None:
+        """Where a support or an obstacle is from now on, instead of its displacement, motion or bone.
+
+        ``position`` [m], ``turn`` axis times angle [rad], both from rest. It gets there in the course of the next
+        increment.
+        """
+        self._world._ready().set_pose(self._id, position, turn)
+
+    def change(self, **keys: Any) -> None:
+        """Changes several keys at once; None takes one away."""
+        self._world._change(self, keys)
+
+    def remove(self) -> None:
+        """Takes the effect out of its world."""
+        self._world.remove(self)
 
     def __getattr__(self, attribute: str) -> Any:
         if attribute.startswith("_"):
@@ -166,10 +194,13 @@ class LiveEffect:
 
     def __setattr__(self, attribute: str, value: Any) -> None:
         if attribute == "amount" and np.ndim(value) == 0 and value is not None:
-            self._world._core.set_amount(self._id, _number(value, f'{self.kind} "{self.name}": amount'))
-            object.__setattr__(self, "_amount", float(value))
+            number = _number(value, f'{self.kind} "{self.name}": amount')
+            self._world._ready().set_amount(self._id, number)
+            object.__setattr__(self, "_amount", number)
             return
-        self._world._change(self, attribute, value)
+        if isinstance(getattr(type(self), attribute, None), property) and attribute != "amount":
+            raise Error(f'{self.kind} "{self.name}": {attribute} is read, not set')
+        self.change(**{attribute: value})
 
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *(key.python_name for key, _ in arguments(self.kind))})
@@ -212,11 +243,38 @@ class World:
     ) -> None:
         given = {"gravity": gravity, "scheme": scheme, "threads": threads, **options}
         self._options = {name: _keys.plain(value, f"World: {name}") for name, value in given.items()}
-        self._core = _isochor.World(_keys.text(self._options))
+        self._begin(_isochor.World(_keys.text(self._options)))
+        self.progress = progress
+
+    def _begin(self, core: Any) -> None:
+        self._core = core
         self._bodies: list[Body] = []
         self._effects: list[LiveEffect] = []
         self._progress: Callable[[Progress], None] | None = None
-        self.progress = progress
+        # What the world was when it was last compiled, to go back to where a change fails; None: no change waits.
+        self._before: list[tuple[Any, ...]] | None = None
+        self._gravity = np.array(self._options.get("gravity", (0.0, 0.0, 0.0)), float)
+
+    # ---- changes that wait for the next step ----
+
+    def _changing(self) -> None:
+        if self._before is None:
+            self._before = [(b, b._described) for b in self._bodies]
+            self._before += [(e, e._description) for e in self._effects]
+
+    def _ready(self) -> Any:
+        """The core with the changes made that waited; where they fail the handles are as before, too."""
+        if self._before is not None:
+            before, self._before = self._before, None
+            try:
+                self._core.compile()
+            except Error:
+                self._bodies = [thing for thing, _ in before if isinstance(thing, Body)]
+                self._effects = [thing for thing, _ in before if isinstance(thing, LiveEffect)]
+                for thing, described in before:
+                    object.__setattr__(thing, "_described" if isinstance(thing, Body) else "_description", described)
+                raise
+        return self._core
 
     # ---- what is in it ----
 
@@ -244,6 +302,7 @@ class World:
         described["name"] = name or _free("body", [b.name for b in self._bodies])
         if any(b.name == described["name"] for b in self._bodies):
             raise Error(f'add_body: a body has the name "{described["name"]}" already; give another')
+        self._changing()
         core_id = self._core.add_body(mesh._core, _keys.text(described))
         body = Body(self, core_id, described["name"], described, mesh)
         self._bodies.append(body)
@@ -259,6 +318,7 @@ class World:
         if keys["name"] in taken:
             raise Error(f'add: an effect has the name "{keys["name"]}" already; give another')
         named = Effect(effect.kind, keys, effect.body)
+        self._changing()
         core_id = self._core.add(_keys.list_of(effect.kind), _keys.text(self._with_body(named)))
         live = LiveEffect(self, core_id, named)
         self._effects.append(live)
@@ -269,10 +329,9 @@ class World:
         keys = dict(effect.keys)
         body = effect.body
         if isinstance(body, Body):
-            if body._world is not self:
-                raise Error(
-                    f'{effect.kind} "{effect.name}": body "{body.name}" is of another world; give one of this world'
-                )
+            why = self._core.why_not(body._id)
+            if why is not None:
+                raise Error(f'{effect.kind} "{effect.name}": body "{body.name}": {why}')
             body = body.name
         if body is not None:
             place = keys
@@ -281,13 +340,46 @@ class World:
             place["body"] = _keys.plain(body, f"{effect.kind}: body")
         return keys
 
-    def _change(self, effect: LiveEffect, attribute: str, value: Any) -> None:
-        known = [key.python_name for key, _ in arguments(effect.kind)]
-        if attribute not in known:
-            raise _keys.unknown(f'{effect.kind} "{effect.name}"', attribute, known)
-        raise Error(
-            f'{effect.kind} "{effect.name}": {attribute} cannot be changed in a world; of its keys amount can'
-        )
+    def remove(self, thing: Body | LiveEffect) -> None:
+        """Takes an effect, or a body that no effect names, out of the world.
+
+        What is untouched keeps its state bit for bit. Costs a new structure, see ``StepReport.compile_work``.
+        """
+        if not isinstance(thing, (Body, LiveEffect)):
+            raise Error(f"remove: a value of type {type(thing).__name__}; give a body or an effect of this world")
+        self._changing()
+        if isinstance(thing, Body):
+            self._core.remove_body(thing._id)
+            self._bodies = [body for body in self._bodies if body.name != thing.name]
+        else:
+            self._core.remove_effect(thing._id)
+            self._effects = [effect for effect in self._effects if effect.name != thing.name]
+
+    def _change(self, effect: LiveEffect, keys: dict[str, Any]) -> None:
+        if "name" in keys:
+            raise Error(f'{effect.kind} "{effect.name}": the name of an effect stays; remove it and add another')
+        described = effect._description.with_keys(**keys)
+        self._changing()
+        self._core.replace(effect._id, _keys.list_of(effect.kind), _keys.text(self._with_body(described)))
+        object.__setattr__(effect, "_description", described)
+
+    def _set_material(self, body: Body, material: Material, region: str) -> None:
+        if not isinstance(material, Material):
+            raise Error(
+                f"set_material: a value of type {type(material).__name__}; give a material, as isochor.neo_hookean() makes"
+            )
+        keys = {**material.keys, "region": region}
+        if not region:
+            del keys["region"]
+        self._changing()
+        self._core.set_material(body._id, region, _keys.text(keys))
+        old = [m for m in body._described["materials"] if m.get("region", "") == region]
+        if "density" in keys:
+            self._core.set_density(body._id, region, keys["density"])
+        elif old and "density" in old[0]:
+            keys["density"] = old[0]["density"]
+        others = [m for m in body._described["materials"] if region and m.get("region", "") != region]
+        body._described = {**body._described, "materials": [*others, keys]}
 
     @property
     def bodies(self) -> tuple[Body, ...]:
@@ -325,7 +417,7 @@ class World:
     def progress(self, callback: Callable[[Progress], None] | None) -> None:
         self._progress = callback
         if callback is None:
-            self._core.on_progress(None)
+            self._core.set_progress(None)
             return
         # The core must not keep the world alive that owns it.
         this = weakref.ref(self)
@@ -335,11 +427,16 @@ class World:
             if world is not None and world._progress is not None:
                 world._progress(Progress(*values))
 
-        self._core.on_progress(tell)
+        self._core.set_progress(tell)
 
     def compile(self) -> None:
-        """Builds the system; the first step does so too. Names that do not exist are refused here."""
-        self._core.compile()
+        """Builds the system, or what has changed of it; the next step does so too.
+
+        Names that do not exist are refused here. Changes of a compiled world that fail are taken back, all of them
+        since the last compilation, and the world goes on as it was.
+        """
+        self._changing()
+        self._ready()
 
     def advance(self, h: float) -> StepReport:
         """Advances by ``h`` seconds (statics: of load factor) in as many increments as it takes.
@@ -347,7 +444,7 @@ class World:
         Raises :class:`isochor.NotConverged` where there is no equilibrium: the state is then the last one that
         converged, and the report's ``time`` says how far it got.
         """
-        return self._ended(self._core.advance(_number(h, "advance: h")))
+        return self._ended(self._ready().advance(_number(h, "advance: h")))
 
     def step(self, h: float, *, iterations: int = 0, seconds: float = 0.0) -> StepReport:
         """One increment of ``h`` seconds, or :class:`isochor.NotConverged` and the state as it was.
@@ -355,11 +452,11 @@ class World:
         With a budget of Newton ``iterations`` or of wall time ``seconds``, a step that does not converge in time is
         kept where it got, and its report says ``unfinished``.
         """
-        return self._ended(self._core.step(_number(h, "step: h"), int(iterations), float(seconds)))
+        return self._ended(self._ready().step(_number(h, "step: h"), int(iterations), float(seconds)))
 
     def follow(self, length: float) -> StepReport:
         """Scheme "continuation": one step of this length [m] along the path of equilibria, through limit points."""
-        return self._ended(self._core.follow(_number(length, "follow: length")))
+        return self._ended(self._ready().follow(_number(length, "follow: length")))
 
     def cancel(self) -> None:
         """Stops the step that runs, or else the next one, from any thread: it raises :class:`isochor.Cancelled`."""
@@ -389,11 +486,11 @@ class World:
         After a step the same array shows the new state; ``.copy()`` keeps one. It may outlive the world, and then
         shows the last numbers. Compiles the world if need be.
         """
-        return self._core.positions("positions", self._id_of(body, "positions"))
+        return self._ready().positions("positions", self._id_of(body, "positions"))
 
     def velocities(self, body: Body) -> np.ndarray:
         """Velocities now [m/s], shape (n, 3), float64: a read-only view like that of ``positions``."""
-        return self._core.velocities("velocities", self._id_of(body, "velocities"))
+        return self._ready().velocities("velocities", self._id_of(body, "velocities"))
 
     def rest_positions(self, body: Body) -> np.ndarray:
         """Positions at rest [m], shape (n, 3), read-only."""
@@ -402,68 +499,129 @@ class World:
 
     def set_positions(self, body: Body, positions: ArrayLike) -> None:
         """Puts the nodes of a body somewhere else [m], shape (n, 3). It is at rest there."""
-        self._core.set_positions(self._id_of(body, "set_positions"), positions)
+        self._ready().set_positions(self._id_of(body, "set_positions"), positions)
 
     def set_velocities(self, body: Body, velocities: ArrayLike) -> None:
         """Dynamics: how fast the nodes of a body move [m/s], shape (n, 3)."""
-        self._core.set_velocities(self._id_of(body, "set_velocities"), velocities)
+        self._ready().set_velocities(self._id_of(body, "set_velocities"), velocities)
+
+    @property
+    def gravity(self) -> np.ndarray:
+        """[m/s^2]; setting it costs nothing. In statics the next increment ramps to it."""
+        return self._gravity.copy()
+
+    @gravity.setter
+    def gravity(self, value: ArrayLike) -> None:
+        self._core.set_gravity(value)
+        self._gravity = np.array(value, float)
+
+    def set_forces(self, body: Body, forces: ArrayLike) -> None:
+        """Dead forces on all nodes of a body [N], shape (n, 3), until they are set anew or cleared."""
+        self._ready().set_forces(self._id_of(body, "set_forces"), forces)
+
+    def add_force(self, body: Body, node: int, force: ArrayLike) -> None:
+        """A dead force on one node [N], on top of those that are there."""
+        self._ready().add_force(self._id_of(body, "add_force"), int(node), force)
+
+    def add_force_at(self, body: Body, point: ArrayLike, force: ArrayLike) -> None:
+        """A dead force on a point of the body, given by where it is at rest [m], on top of those that are there [N]."""
+        self._ready().add_force_at(self._id_of(body, "add_force_at"), point, force)
+
+    def clear_forces(self) -> None:
+        """No forces on nodes and points any more, of all bodies."""
+        self._core.clear_forces()
 
     def measures(self, body: Body) -> BodyMeasures:
         """Volume, mass, center, momentum of a body now."""
-        return BodyMeasures._of(self._core.measures(self._id_of(body, "measures")))
+        return BodyMeasures._of(self._ready().measures(self._id_of(body, "measures")))
 
     def fields(self, body: Body) -> Fields:
         """Stresses and pressures of a body now, at nodes and cells."""
-        return Fields(**self._core.fields(self._id_of(body, "fields")))
+        return Fields(**self._ready().fields(self._id_of(body, "fields")))
 
     def gauges(self) -> list[Gauge]:
         """What effects report now."""
-        return [Gauge(*values) for values in self._core.gauges()]
+        return [Gauge(*values) for values in self._ready().gauges()]
 
     def energies(self) -> Energies:
         """Energies of the whole world now [J]."""
-        return Energies(**self._core.energies())
+        return Energies(**self._ready().energies())
 
     def momentum(self) -> tuple[np.ndarray, np.ndarray]:
         """Linear [kg m/s] and, about the origin, angular momentum [kg m^2/s] of everything that has mass."""
-        linear, angular = self._core.momentum()
+        linear, angular = self._ready().momentum()
         return linear, angular
 
     @property
     def constitutive_residual(self) -> float:
         """Largest |phi - target - C lambda| of all rows, relative to their measure."""
-        return self._core.constitutive_residual()
+        return self._ready().constitutive_residual()
 
     @property
     def method(self) -> str:
         """How saddle points are solved and why, in words."""
-        return self._core.method()
+        return self._ready().method()
 
     @property
     def warnings(self) -> list[str]:
         """What compile() noticed and took in its stride."""
-        return self._core.warnings()
+        return self._ready().warnings()
 
     def size(self) -> Size:
         """Unknowns and memory."""
-        return Size(**self._core.size())
+        return Size(**self._ready().size())
 
     @property
     def state_hash(self) -> int:
         """Of the state and the amounts that were set: worlds with equal hashes have the same bits."""
-        return self._core.state_hash()
+        return self._ready().state_hash()
+
+    # ---- other lives ----
+
+    def reset(self) -> None:
+        """Back to rest at time 0, with the bits of a new world.
+
+        Bodies, effects and materials stay as they are now; amounts, gravity, poses and forces that were set are
+        forgotten.
+        """
+        self._ready().reset()
+        self._forget()
+
+    def _forget(self) -> None:
+        self._gravity = np.array(self._options.get("gravity", (0.0, 0.0, 0.0)), float)
+        for effect in self._effects:
+            object.__setattr__(effect, "_amount", None)
+
+    def clone(self, *, threads: int = 0) -> World:
+        """Another world with the same scene and state, which goes on with the same bits.
+
+        Tables that nobody changes are shared. Handles of this one are good there as well, and ``clone[name]`` finds
+        its own. ``threads``: of its own; 0: as many as this world has.
+        """
+        return self._like(self._ready().clone(int(threads)))
+
+    def _like(self, core: Any) -> World:
+        made = World.__new__(World)
+        made._options = dict(self._options)
+        made._begin(core)
+        made._gravity = self._gravity.copy()
+        made._bodies = [Body(made, b._id, b._name, b._described, b._given) for b in self._bodies]
+        made._effects = [LiveEffect(made, e._id, e._description) for e in self._effects]
+        for mine, its in zip(self._effects, made._effects):
+            object.__setattr__(its, "_amount", mine._amount)
+        return made
 
     # ---- saved states ----
 
     def save(self) -> bytes:
         """Everything that survives a step. For the same build and machine, not for archives."""
-        return self._core.save()
+        return self._ready().save()
 
     def load(self, state: bytes) -> None:
         """Takes what ``save()`` of a world with the same bodies and effects gave; goes on with the same bits."""
         if not isinstance(state, bytes):
             raise Error(f"load: a value of type {type(state).__name__}; give the bytes that save() returned")
-        self._core.load(state)
+        self._ready().load(state)
         for effect in self._effects:
             object.__setattr__(effect, "_amount", None)
 
@@ -473,6 +631,7 @@ class World:
             "bodies": [(body._given, body._described) for body in self._bodies],
             "effects": [(e.kind, self._with_body(e._description), e._amount) for e in self._effects],
             "state": self.save() if self._bodies else None,
+            "gravity": self._gravity,
         }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -486,7 +645,7 @@ class World:
             object.__setattr__(effect, "_amount", amount)
             self._effects.append(effect)
         if state["state"] is not None:
-            self._core.load(state["state"])
+            self._ready().load(state["state"])
 
     def __repr__(self) -> str:
         return f"<isochor.World: {len(self._bodies)} bodies, {len(self._effects)} effects, t = {self.time:g}>"

@@ -2,39 +2,12 @@
 
 namespace isochor::python {
 
-HostedWorld::HostedWorld(WorldOptions options) {
-  options.log = [this](const std::string& line) {
-    const std::lock_guard lock(log_lock_);
-    log_.push_back(line);
-  };
-  world_.emplace(need(World::create(std::move(options))));
-  world_->stop_when([this] { return interruption_.asked(); });
-}
-
-HostedWorld::Turn::Turn(HostedWorld& world, const char* call) : world_(world) {
-  bool idle = false;
-  if (world.busy_.compare_exchange_strong(idle, true)) {
-    world.user_ = std::this_thread::get_id();
-    world.running_ = call;
-    return;
-  }
-  const char* running = world.running_.load();
-  const std::string other = std::string(running ? running : "another call") + "()";
-  if (world.user_.load() == std::this_thread::get_id()) {
-    throw Refused(std::string(call) + ": called in a callback of " + other +
-                  " of the same world, which has not returned; of all calls only cancel() may be made there");
-  }
-  throw Refused(std::string(call) + ": another thread is in " + other +
-                " of this world; one thread at a time uses a world: wait for it, or give each thread its own");
-}
-
-// A destructor calls this: a handler of Python's logging that raises is told of and goes no further.
-void HostedWorld::pass_on_log() {
+void LogLines::pass_on() {
   std::vector<std::string> lines;
   {
-    const std::lock_guard lock(log_lock_);
-    if (log_.empty()) return;
-    lines.swap(log_);
+    const std::lock_guard locked(lines_->lock);
+    if (lines_->waiting.empty()) return;
+    lines.swap(lines_->waiting);
   }
   try {
     const py::object logger = py::module_::import("logging").attr("getLogger")("isochor");
@@ -44,30 +17,57 @@ void HostedWorld::pass_on_log() {
   }
 }
 
+HostedWorld::HostedWorld(OptionParts parts) {
+  names_.statics = parts.statics;
+  names_.gravity = parts.options.gravity;
+  parts.options.log = common_.log.writer();
+  own_.emplace(need(World::create(std::move(parts.options))));
+  world_ = &*own_;
+  listen();
+}
+
+HostedWorld::HostedWorld(World& world, PartNames names, Common common, std::shared_ptr<void> owner)
+    : owner_(std::move(owner)), world_(&world), names_(std::move(names)), common_(std::move(common)) {}
+
+// A clone writes to the log of the world that it is a clone of.
+HostedWorld::HostedWorld(World&& world, const HostedWorld& like)
+    : own_(std::move(world)), world_(&*own_), names_(like.names_) {
+  common_.log = like.common_.log;
+  listen();
+}
+
+void HostedWorld::listen() {
+  world_->stop_when([stop = common_.interruption] { return stop->asked(); });
+}
+
+std::unique_ptr<HostedWorld> HostedWorld::clone(int threads) {
+  Result<World> made = work("clone", [threads](World& w) { return w.clone(threads); });
+  return std::unique_ptr<HostedWorld>(new HostedWorld(need(std::move(made)), *this));
+}
+
 void HostedWorld::set_progress(const py::object& callback) {
-  const Turn turn(*this, "on_progress");
+  const Turn turn(*common_.callers, "progress");
   progress_ = callback;
   if (callback.is_none()) {
     world_->on_progress({});
     return;
   }
   world_->on_progress([this](const ProgressInfo& info) {
-    interruption_.call([&] {
-      progress_(info.time, info.target, info.iteration, info.force_residual, info.row_residual);
-    });
+    common_.interruption->call(
+        [&] { progress_(info.time, info.target, info.iteration, info.force_residual, info.row_residual); });
   });
 }
 
 StepReport HostedWorld::step(const char* call, const std::function<StepReport(World&)>& f) {
   StepReport report;
   {
-    const Turn turn(*this, call);
-    const Log log(*this);
-    interruption_.begin();
+    const Turn turn(*common_.callers, call);
+    const PassOn log{common_.log};
+    common_.interruption->begin();
     const py::gil_scoped_release free;
     report = f(*world_);
   }
-  interruption_.end();
+  common_.interruption->end();
   return report;
 }
 

@@ -3,31 +3,64 @@
 
 #include <functional>
 #include <mutex>
+#include <optional>
 
+#include "callers.h"
 #include "interruption.h"
 #include "isochor/world.h"
 #include "parts.h"
 
 namespace isochor::python {
 
+// Lines of a log from any thread, handed to Python's logger "isochor" by the caller of a call when it ends.
+class LogLines {
+ public:
+  std::function<void(const std::string&)> writer() {
+    return [lines = lines_](const std::string& line) {
+      const std::lock_guard locked(lines->lock);
+      lines->waiting.push_back(line);
+    };
+  }
+  // With the interpreter lock. Raises nothing: what a handler raises is told as unraisable.
+  void pass_on();
+
+ private:
+  struct Lines {
+    std::mutex lock;
+    std::vector<std::string> waiting;
+  };
+  std::shared_ptr<Lines> lines_ = std::make_shared<Lines>();
+};
+
+// What worlds of a batch have in common.
+struct Common {
+  std::shared_ptr<Callers> callers = std::make_shared<Callers>();
+  std::shared_ptr<Interruption> interruption = std::make_shared<Interruption>();
+  LogLines log;
+};
+
 class HostedWorld {
  public:
-  explicit HostedWorld(WorldOptions options);
+  explicit HostedWorld(OptionParts parts);
+  // One of a batch, which `owner` keeps alive and whose calls are those of `common`.
+  HostedWorld(World& world, PartNames names, Common common, std::shared_ptr<void> owner);
   HostedWorld(const HostedWorld&) = delete;
   HostedWorld& operator=(const HostedWorld&) = delete;
+
+  std::unique_ptr<HostedWorld> clone(int threads);
 
   // Calls f(world) as the only caller and without the interpreter lock; passes on then what the world logged.
   template <class F>
   auto work(const char* call, const F& f) {
-    const Turn turn(*this, call);
-    const Log log(*this);
+    const Turn turn(*common_.callers, call);
+    const PassOn log{common_.log};
     const py::gil_scoped_release free;
     return f(*world_);
   }
   // The same with the lock, for what takes no time.
   template <class F>
   auto glance(const char* call, const F& f) {
-    const Turn turn(*this, call);
+    const Turn turn(*common_.callers, call);
     return f(*world_);
   }
   // Like work(), of a step: Ctrl-C cancels it, and what was raised in it is raised again.
@@ -37,41 +70,25 @@ class HostedWorld {
 
   // What effects that are added may name.
   PartNames& names() { return names_; }
+  const LogLines& log() const { return common_.log; }
 
   // None: no callback.
   void set_progress(const py::object& callback);
 
  private:
-  // One call at a time. What comes from another thread, or from a callback of the call that runs, is refused.
-  class Turn {
-   public:
-    Turn(HostedWorld& world, const char* call);
-    ~Turn() { world_.busy_.store(false); }
-    Turn(const Turn&) = delete;
-    Turn& operator=(const Turn&) = delete;
-
-   private:
-    HostedWorld& world_;
+  struct PassOn {
+    LogLines& lines;
+    ~PassOn() { lines.pass_on(); }
   };
-  // Passes on log lines at the end of a call, with the lock.
-  struct Log {
-    explicit Log(HostedWorld& w) : world(w) {}
-    ~Log() { world.pass_on_log(); }
-    Log(const Log&) = delete;
-    Log& operator=(const Log&) = delete;
-    HostedWorld& world;
-  };
-  void pass_on_log();
+  HostedWorld(World&& world, const HostedWorld& like);
+  void listen();
 
-  std::optional<World> world_;
+  std::optional<World> own_;
+  std::shared_ptr<void> owner_;  // where the world is not its own
+  World* world_;
   PartNames names_;
-  std::atomic<bool> busy_{false};
-  std::atomic<std::thread::id> user_{};
-  std::atomic<const char*> running_{nullptr};
-  Interruption interruption_;
+  Common common_;
   py::object progress_;
-  std::mutex log_lock_;
-  std::vector<std::string> log_;
 };
 
 }  // namespace isochor::python

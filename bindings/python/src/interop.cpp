@@ -25,13 +25,6 @@ py::array numeric(const py::handle& values, const std::string& what, const char*
   return array;
 }
 
-std::string shape_of(const py::array& array) {
-  std::string text = "(";
-  for (py::ssize_t d = 0; d < array.ndim(); ++d)
-    text += (d > 0 ? ", " : "") + std::to_string(array.shape(d));
-  return text + (array.ndim() == 1 ? ",)" : ")");
-}
-
 using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Integers = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
@@ -78,6 +71,12 @@ std::vector<double> finite_numbers(const py::array& given, const std::string& wh
 }
 
 }  // namespace
+
+std::string shape_of(const py::array& array) {
+  std::string text = "(";
+  for (py::ssize_t d = 0; d < array.ndim(); ++d) text += (d > 0 ? ", " : "") + std::to_string(array.shape(d));
+  return text + (array.ndim() == 1 ? ",)" : ")");
+}
 
 std::vector<double> numbers_in(const py::handle& values, const std::string& what) {
   return finite_numbers(numeric(values, what, "fiu", "real numbers"), what, "entry", 1);

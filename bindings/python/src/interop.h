@@ -55,10 +55,13 @@ inline py::array array_of(std::vector<Vec3>&& points) {
   return array_of(std::span<const Vec3>(*kept), kept);
 }
 py::array array_of(const Vec3& vector);
+// "(2, 3)".
+std::string shape_of(const py::array& array);
 
 // One a file.
 void bind_meshes(py::module_& module);
 void bind_worlds(py::module_& module);
+void bind_batches(py::module_& module);
 void bind_scenes(py::module_& module);
 void bind_catalog(py::module_& module);
 

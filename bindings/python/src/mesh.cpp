@@ -23,8 +23,9 @@ CellType cell_type_of(const py::array& cells) {
   if (width == 4) return CellType::tet4;
   if (width == 10) return CellType::tet10;
   if (width == 8) return CellType::hex8;
-  throw Refused("Mesh: cells have " + (cells.ndim() == 2 ? std::to_string(width) + " nodes each"
-                                                          : std::to_string(cells.ndim()) + " dimensions") +
+  throw Refused("Mesh: cells have " +
+                (cells.ndim() == 2 ? std::to_string(width) + " nodes each"
+                                   : std::to_string(cells.ndim()) + " dimensions") +
                 "; give an array of shape (m, 4), (m, 10) or (m, 8) for tet4, tet10 or hex8");
 }
 
@@ -40,8 +41,8 @@ std::shared_ptr<Mesh> make_mesh(const py::object& points, const py::object& cell
   mesh->cells = indices_in(cells, "Mesh: cells", nodes_per_cell(mesh->cell_type), nodes);
   mesh->regions = regions.empty() ? std::vector<std::string>{"body"} : regions;
   if (!cell_region.is_none()) {
-    mesh->cell_region = indices_in(cell_region, "Mesh: cell_region", 0,
-                                   static_cast<Index>(mesh->regions.size()));
+    mesh->cell_region =
+        indices_in(cell_region, "Mesh: cell_region", 0, static_cast<Index>(mesh->regions.size()));
     if (static_cast<Index>(mesh->cell_region.size()) != mesh->cell_count()) {
       throw Refused("Mesh: cell_region has " + std::to_string(mesh->cell_region.size()) + " entries for " +
                     std::to_string(mesh->cell_count()) + " cells; give one a cell");
@@ -153,10 +154,9 @@ std::shared_ptr<Mesh> box(const py::object& lower, const py::object& upper,
 void bind_meshes(py::module_& module) {
   MeshClass(module, "Mesh")
       .def(py::init(&make_mesh))
-      .def_property_readonly("points",
-                             [](const std::shared_ptr<Mesh>& m) {
-                               return array_of(std::span<const Vec3>(m->nodes), m);
-                             })
+      .def_property_readonly(
+          "points",
+          [](const std::shared_ptr<Mesh>& m) { return array_of(std::span<const Vec3>(m->nodes), m); })
       .def_property_readonly("cells",
                              [](const std::shared_ptr<Mesh>& m) {
                                return array_of(std::span<const Index>(m->cells), nodes_per_cell(m->cell_type),

@@ -26,6 +26,7 @@ PYBIND11_MODULE(_isochor, module) {
   module.def("build_description", &build_description);
   bind_meshes(module);
   bind_worlds(module);
+  bind_batches(module);
   bind_scenes(module);
   bind_catalog(module);
 }

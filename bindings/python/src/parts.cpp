@@ -68,6 +68,13 @@ BodyDef body_from(const std::string& keys, const Mesh& mesh) {
   return def;
 }
 
+MaterialPtr material_from(const std::string& keys) {
+  Json body = dummy("body");
+  body["materials"] = Json::array({Json::parse(keys)});
+  const SceneDef scene = scene_of({{"bodies", Json::array({body})}});
+  return need(make_material(scene.bodies.front().materials.front(), ""));
+}
+
 EffectPtr effect_from(const std::string& list, const std::string& keys, const PartNames& names) {
   Json bodies = Json::array();
   for (const std::string& name : names.bodies) bodies.push_back(dummy(name));

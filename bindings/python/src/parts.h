@@ -11,6 +11,12 @@ struct PartNames {
   std::vector<std::string> bodies;  // by number
   bool statics = false;
   Vec3 gravity{};
+
+  void put(BodyId body, const std::string& name) {
+    const auto place = static_cast<std::size_t>(body.number());
+    if (bodies.size() <= place) bodies.resize(place + 1);
+    bodies[place] = name;
+  }
 };
 
 struct OptionParts {
@@ -19,6 +25,7 @@ struct OptionParts {
 };
 OptionParts options_from(const std::string& keys);
 BodyDef body_from(const std::string& keys, const Mesh& mesh);
+MaterialPtr material_from(const std::string& keys);
 EffectPtr effect_from(const std::string& list, const std::string& keys, const PartNames& names);
 
 }  // namespace isochor::python

@@ -83,6 +83,7 @@ py::dict size(HostedWorld& world) {
   out["matrix_nonzeros"] = s.matrix_nonzeros;
   out["factor_nonzeros"] = s.factor_nonzeros;
   out["engine_bytes"] = s.engine_bytes;
+  out["table_bytes"] = s.table_bytes;
   return out;
 }
 
@@ -110,13 +111,9 @@ std::shared_ptr<Mesh> mesh(HostedWorld& world, BodyId body) {
 void bind_numbers(HostedWorldClass& world) {
   world.def("time", [](HostedWorld& w) { return w.glance("time", [](World& v) { return v.time(); }); })
       .def("energies",
-           [](HostedWorld& w) {
-             return dict_of(w.work("energies", [](World& v) { return v.energies(); }));
-           })
+           [](HostedWorld& w) { return dict_of(w.work("energies", [](World& v) { return v.energies(); })); })
       .def("momentum",
-           [](HostedWorld& w) {
-             return vectors(w.work("momentum", [](World& v) { return v.momentum(); }));
-           })
+           [](HostedWorld& w) { return vectors(w.work("momentum", [](World& v) { return v.momentum(); })); })
       .def("gauges",
            [](HostedWorld& w) { return list_of(w.work("gauges", [](World& v) { return v.gauges(); })); })
       .def("constitutive_residual",
@@ -154,7 +151,7 @@ py::list list_of(const std::vector<Gauge>& gauges) {
   return out;
 }
 
-void bind_reading(py::module_&, HostedWorldClass& world) {
+void bind_reading(HostedWorldClass& world) {
   bind_numbers(world);
   world.def("positions", &positions)
       .def("velocities", &velocities)

@@ -5,7 +5,7 @@
 
 namespace isochor::python {
 
-using HostedWorldClass = py::class_<HostedWorld>;
+using HostedWorldClass = py::class_<HostedWorld, std::shared_ptr<HostedWorld>>;
 
 py::dict dict_of(const StageSeconds& seconds);
 void put_counters(const SolveCounters& work, py::dict& out);
@@ -13,7 +13,8 @@ py::dict dict_of(const StepReport& report);
 py::dict dict_of(const Energies& energies);
 py::list list_of(const std::vector<Gauge>& gauges);
 
-void bind_stepping(py::module_& module, HostedWorldClass& world);
-void bind_reading(py::module_& module, HostedWorldClass& world);
+void bind_changing(HostedWorldClass& world);
+void bind_stepping(HostedWorldClass& world);
+void bind_reading(HostedWorldClass& world);
 
 }  // namespace isochor::python

@@ -1,6 +1,4 @@
 // Scene files: read, changed, run; records of a run as arrays over time.
-#include "scenes/scene_file.h"
-
 #include <pybind11/functional.h>
 #include <pybind11/stl.h>
 
@@ -10,6 +8,7 @@
 #include "reports.h"
 #include "scenes/library.h"
 #include "scenes/run.h"
+#include "scenes/scene_file.h"
 
 namespace isochor::python {
 
@@ -183,20 +182,15 @@ py::dict run(const SceneDef& scene, const std::string& folder, int threads, std:
 
 void bind_scenes(py::module_& module) {
   py::class_<SceneDef, ScenePtr>(module, "Scene")
-      .def_static("read",
-                  [](const std::string& path, const Overrides& overrides) {
-                    return share(read_scene_file(path, overrides));
-                  })
+      .def_static("read", [](const std::string& path,
+                             const Overrides& overrides) { return share(read_scene_file(path, overrides)); })
       .def_static("from_library", &from_library)
-      .def_static("parse",
-                  [](const std::string& text, const std::string& source, const std::string& folder,
-                     const Overrides& overrides) {
-                    return share(parse_scene(text, source, folder, overrides));
-                  })
-      .def("override",
-           [](const SceneDef& scene, const Overrides& overrides) {
-             return share(override_scene(scene, overrides));
-           })
+      .def_static(
+          "parse",
+          [](const std::string& text, const std::string& source, const std::string& folder,
+             const Overrides& overrides) { return share(parse_scene(text, source, folder, overrides)); })
+      .def("override", [](const SceneDef& scene,
+                          const Overrides& overrides) { return share(override_scene(scene, overrides)); })
       .def("json", [](const SceneDef& scene) { return to_json(scene); })
       .def_readonly("name", &SceneDef::name)
       .def_readonly("title", &SceneDef::title)

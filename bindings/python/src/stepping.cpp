@@ -17,7 +17,10 @@ py::dict follow(HostedWorld& world, double length) {
   return dict_of(world.step("follow", [length](World& w) { return w.follow(length); }));
 }
 
-}  // namespace
+const char* name_of(CompileWork work) {
+  if (work == CompileWork::numbers) return "numbers";
+  return work == CompileWork::structure ? "structure" : "nothing";
+}
 
 const char* name_of(StepStatus status) {
   switch (status) {
@@ -34,6 +37,8 @@ const char* name_of(StepStatus status) {
   }
   return "unfinished";
 }
+
+}  // namespace
 
 py::dict dict_of(const StageSeconds& s) {
   py::dict out;
@@ -80,17 +85,19 @@ py::dict dict_of(const StepReport& r) {
   out["force_residual"] = r.force_residual;
   out["row_residual"] = r.row_residual;
   out["linear_residual"] = r.linear_residual;
+  out["compile_work"] = name_of(r.compiled.work);
+  out["compile_seconds"] = r.compiled.seconds;
   put_counters(r, out);
   out["seconds"] = dict_of(r.seconds);
   return out;
 }
 
-void bind_stepping(py::module_&, HostedWorldClass& world) {
+void bind_stepping(HostedWorldClass& world) {
   world.def("step", &step)
       .def("advance", &advance)
       .def("follow", &follow)
       .def("cancel", &HostedWorld::cancel)
-      .def("on_progress", &HostedWorld::set_progress);
+      .def("set_progress", &HostedWorld::set_progress);
 }
 
 }  // namespace isochor::python
