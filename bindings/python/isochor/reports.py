@@ -221,3 +221,36 @@ class MeshReport:
     worst_quality: float
     smallest_dihedral_deg: float
     findings: tuple[Finding, ...]
+
+
+@dataclass(frozen=True)
+class Orientation:
+    """How a set of nodes has turned and moved since rest: the rigid motion that fits it best."""
+
+    angle: float
+    """[rad], 0 to pi"""
+    axis: np.ndarray
+    """(3,), unit vector of the turn; zero for no turn"""
+    displacement: np.ndarray
+    """(3,), of the middle of the set [m]"""
+    normal: np.ndarray
+    """(3,), unit vector; of surfaces the mean normal of their faces now"""
+    misfit: float
+    """Root mean square distance from the shape at rest moved rigidly [m]"""
+
+
+@dataclass(frozen=True)
+class Response:
+    """Derivatives of an equilibrium by one input: an amount, or a force on a point."""
+
+    positions: dict[str, np.ndarray]
+    """d x of the nodes, by name of the body, each of shape (n, 3)"""
+    gauges: dict[str, dict[str, float]]
+    """By name of the effect and quantity"""
+    reactions: dict[str, Reaction]
+    """By name of the effect"""
+    regular: bool
+    """False: of one side only, since a contact or a bounded row is about to close or to open; ``note`` says which."""
+    note: str
+    unstable_directions: int
+    """Directions in which the equilibrium is unstable under fixed loads; -1: not known"""

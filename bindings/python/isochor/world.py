@@ -13,7 +13,18 @@ from .effects import Effect, arguments
 from .errors import Cancelled, Error, NotConverged
 from .materials import Material
 from .mesh import Mesh
-from .reports import BodyMeasures, Energies, Fields, Gauge, Progress, Reaction, Size, StepReport
+from .reports import (
+    BodyMeasures,
+    Energies,
+    Fields,
+    Gauge,
+    Orientation,
+    Progress,
+    Reaction,
+    Response,
+    Size,
+    StepReport,
+)
 
 Amount = Any  # a number, or points [(time, value), ...]
 
@@ -551,6 +562,41 @@ class World:
         """Linear [kg m/s] and, about the origin, angular momentum [kg m^2/s] of everything that has mass."""
         linear, angular = self._ready().momentum()
         return linear, angular
+
+    def orientation(self, body: Body, **where: Any) -> Orientation:
+        """How a face or another set of nodes has turned and moved since rest.
+
+        ``where``: keys of ``orientations[].where`` in docs/scenes.md, such as ``surfaces``, ``nodes``, ``boxes``.
+        """
+        keys = {key.rstrip("_"): _keys.plain(value, f"orientation: {key}") for key, value in where.items()}
+        self._id_of(body, "orientation")
+        return Orientation(**self._ready().orientation(_keys.text({**keys, "body": body.name})))
+
+    def derivatives(self, *inputs: LiveEffect | tuple[Body, ArrayLike, ArrayLike]) -> list[Response]:
+        """How the equilibrium that the state is at answers to small changes; one :class:`Response` an input.
+
+        An input is an effect, for its amount, or (body, point at rest [m], force [N]); derivatives are per unit of
+        the amount, or of the force as it is given. Of dynamics it is the equilibrium without inertia. Costs one
+        factorization, and two solves an input.
+        """
+        given: list[Any] = []
+        for one in inputs:
+            if isinstance(one, LiveEffect):
+                given.append(one._id)
+            elif isinstance(one, tuple) and len(one) == 3:
+                given.append((self._id_of(one[0], "derivatives"), one[1], one[2]))
+            else:
+                raise Error(f"derivatives: {one!r}; give effects, or tuples (body, point, force)")
+        responses = []
+        for raw in self._ready().derivatives(given):
+            gauges: dict[str, dict[str, float]] = {}
+            for gauge in raw["gauges"]:
+                gauges.setdefault(gauge[0], {})[gauge[2]] = gauge[4]
+            raw["gauges"] = gauges
+            raw["positions"] = dict(zip((body.name for body in self._bodies), raw["positions"]))
+            raw["reactions"] = {e.name: Reaction(*two) for e, two in zip(self._effects, raw["reactions"])}
+            responses.append(Response(**raw))
+        return responses
 
     @property
     def constitutive_residual(self) -> float:

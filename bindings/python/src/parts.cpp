@@ -75,6 +75,14 @@ MaterialPtr material_from(const std::string& keys) {
   return need(make_material(scene.bodies.front().materials.front(), ""));
 }
 
+Selection selection_from(const std::string& keys, const PartNames& names) {
+  Json bodies = Json::array();
+  for (const std::string& name : names.bodies) bodies.push_back(dummy(name));
+  const SceneDef scene = scene_of(
+      {{"bodies", bodies}, {"orientations", Json::array({{{"name", "one"}, {"where", Json::parse(keys)}}})}});
+  return scene.orientations.front().where;
+}
+
 EffectPtr effect_from(const std::string& list, const std::string& keys, const PartNames& names) {
   Json bodies = Json::array();
   for (const std::string& name : names.bodies) bodies.push_back(dummy(name));

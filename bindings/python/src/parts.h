@@ -26,6 +26,7 @@ struct OptionParts {
 OptionParts options_from(const std::string& keys);
 BodyDef body_from(const std::string& keys, const Mesh& mesh);
 MaterialPtr material_from(const std::string& keys);
+Selection selection_from(const std::string& keys, const PartNames& names);
 EffectPtr effect_from(const std::string& list, const std::string& keys, const PartNames& names);
 
 }  // namespace isochor::python

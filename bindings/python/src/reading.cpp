@@ -108,6 +108,49 @@ std::shared_ptr<Mesh> mesh(HostedWorld& world, BodyId body) {
   });
 }
 
+ResponseInput input_of(const py::handle& given) {
+  if (py::isinstance<EffectId>(given)) return ResponseInput::amount_of(given.cast<EffectId>());
+  const auto force = given.cast<py::tuple>();
+  return ResponseInput::force_at(force[0].cast<BodyId>(), vector_in(force[1], "derivatives: point"),
+                                 vector_in(force[2], "derivatives: force"));
+}
+
+py::dict dict_of(Response&& response) {
+  py::list positions, reactions;
+  for (std::vector<Vec3>& body : response.positions) positions.append(array_of(std::move(body)));
+  for (const auto& reaction : response.reactions) reactions.append(vectors(reaction));
+  py::dict out;
+  out["positions"] = positions;
+  out["gauges"] = list_of(response.gauges);
+  out["reactions"] = reactions;
+  out["regular"] = response.regular;
+  out["note"] = response.note;
+  out["unstable_directions"] = response.unstable_directions;
+  return out;
+}
+
+// Of each input: the id of an effect, for its amount, or (body, point, force).
+py::list derivatives(HostedWorld& world, const py::list& given) {
+  std::vector<ResponseInput> inputs;
+  for (const py::handle one : given) inputs.push_back(input_of(one));
+  auto responses = need(world.work("derivatives", [&](World& w) { return w.derivatives(inputs); }));
+  py::list out;
+  for (Response& response : responses) out.append(dict_of(std::move(response)));
+  return out;
+}
+
+py::dict orientation(HostedWorld& world, const std::string& keys) {
+  const Orientation o = need(world.work(
+      "orientation", [&](World& w) { return w.orientation(selection_from(keys, world.names())); }));
+  py::dict out;
+  out["angle"] = o.angle;
+  out["axis"] = array_of(o.axis);
+  out["displacement"] = array_of(o.displacement);
+  out["normal"] = array_of(o.normal);
+  out["misfit"] = o.misfit;
+  return out;
+}
+
 void bind_numbers(HostedWorldClass& world) {
   world.def("time", [](HostedWorld& w) { return w.glance("time", [](World& v) { return v.time(); }); })
       .def("energies",
@@ -165,6 +208,8 @@ void bind_reading(HostedWorldClass& world) {
                return v.reaction(effect);
              }));
            })
+      .def("derivatives", &derivatives)
+      .def("orientation", &orientation)
       .def("save", &save)
       .def("load", &load);
 }
