@@ -194,3 +194,20 @@ def test_warnings_reach_the_log(caplog):
         made.world.advance(0.01)
     assert any("no free coordinate" in r.message for r in caplog.records)
     assert made.world.warnings
+
+
+def test_contacts_hold_the_weight():
+    world = iso.World(scheme="statics", gravity=(0, 0, -9.81), threads=1)
+    mesh = iso.box_mesh((0, 0, 0), (0.02, 0.02, 0.02), divisions=(2, 2, 2))
+    body = world.add_body(mesh, iso.neo_hookean(young=1e5, poisson=0.45), name="block")
+    world.add(iso.dirichlet(body, surfaces="z0", directions="xy", name="guide"))
+    world.add(iso.contact(body, surfaces="z0", name="floor"))
+    assert len(world.contacts()) == 0
+    world.advance(1)
+    weight = body.measures().mass * 9.81
+    points, (pair,) = world.contacts(), world.contact_pairs()
+    assert len(points) == pair.points == 9 and set(points.effects) == {"floor"} and set(points.bodies) == {"block"}
+    assert np.allclose(points.normal_forces.sum(axis=0), (0, 0, weight), rtol=1e-6, atol=1e-9)
+    assert np.allclose(points.normals, (0, 0, 1)) and np.allclose(points.gaps, 0, atol=1e-9)
+    assert pair.force[2] == pytest.approx(weight, rel=1e-6) and pair.normal == pytest.approx(weight, rel=1e-6)
+    assert np.allclose(points.positions, body.positions[points.nodes])

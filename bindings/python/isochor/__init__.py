@@ -31,6 +31,8 @@ from .materials import *
 from .mesh import Mesh, box_mesh, read_mesh
 from .reports import (
     BodyMeasures,
+    ContactPair,
+    Contacts,
     Energies,
     Fields,
     Finding,
@@ -56,6 +58,8 @@ __all__ = [
     "BodyMeasures",
     "Box",
     "Cancelled",
+    "ContactPair",
+    "Contacts",
     "Energies",
     "Environment",
     "Error",

@@ -224,6 +224,45 @@ class MeshReport:
 
 
 @dataclass(frozen=True)
+class Contacts:
+    """Points of contacts that press, one entry a point. Forces are on the body that the point is of."""
+
+    effects: list[str]
+    bodies: list[str]
+    partners: list[str]
+    """What is touched: a body, a rigid body or an obstacle"""
+    nodes: np.ndarray
+    """(k,), of the body's mesh; -1 where the point is none of its nodes"""
+    positions: np.ndarray
+    """(k, 3) [m]"""
+    gaps: np.ndarray
+    """(k,), negative within a layer that gives way [m]"""
+    normals: np.ndarray
+    """(k, 3), unit vectors away from the partner"""
+    normal_forces: np.ndarray
+    """(k, 3) [N]"""
+    frictions: np.ndarray
+    """(k, 3) [N]"""
+    areas: np.ndarray
+    """(k,), at rest, that each point stands for; 0: edges [m^2]"""
+
+    def __len__(self) -> int:
+        return len(self.gaps)
+
+
+class ContactPair(NamedTuple):
+    """What two partners of all contacts do to each other."""
+
+    body: str
+    partner: str
+    force: np.ndarray
+    """(3,), on the body, friction included [N]"""
+    normal: float
+    """Sum of the magnitudes of the normal forces [N]"""
+    points: int
+
+
+@dataclass(frozen=True)
 class Orientation:
     """How a set of nodes has turned and moved since rest: the rigid motion that fits it best."""
 

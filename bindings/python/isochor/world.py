@@ -15,6 +15,8 @@ from .materials import Material
 from .mesh import Mesh
 from .reports import (
     BodyMeasures,
+    ContactPair,
+    Contacts,
     Energies,
     Fields,
     Gauge,
@@ -553,6 +555,14 @@ class World:
     def gauges(self) -> list[Gauge]:
         """What effects report now."""
         return [Gauge(*values) for values in self._ready().gauges()]
+
+    def contacts(self) -> Contacts:
+        """Points of contacts that press now, with gap, normal, forces and partner."""
+        return Contacts(**self._ready().contacts())
+
+    def contact_pairs(self) -> list[ContactPair]:
+        """The total contact force of every two partners now."""
+        return [ContactPair(*values) for values in self._ready().contact_pairs()]
 
     def energies(self) -> Energies:
         """Energies of the whole world now [J]."""

@@ -108,6 +108,58 @@ std::shared_ptr<Mesh> mesh(HostedWorld& world, BodyId body) {
   });
 }
 
+// Points of contacts that press, as arrays with one entry a point.
+py::dict contacts(HostedWorld& world) {
+  struct Named {
+    ContactPoint point;
+    std::string effect;
+  };
+  const auto found = world.work("contacts", [](World& w) {
+    std::vector<Named> all;
+    for (ContactPoint& p : w.contacts()) {
+      const std::string name = w.effect_name(p.effect);
+      all.push_back({std::move(p), name});
+    }
+    return all;
+  });
+  py::list effects, bodies, partners;
+  std::vector<Index> nodes;
+  std::vector<double> gaps, areas;
+  std::vector<Vec3> positions, normals, normal_forces, frictions;
+  for (const auto& [p, effect] : found) {
+    effects.append(effect);
+    bodies.append(p.body);
+    partners.append(p.partner);
+    nodes.push_back(p.node);
+    gaps.push_back(p.gap);
+    areas.push_back(p.area);
+    positions.push_back(p.position);
+    normals.push_back(p.normal);
+    normal_forces.push_back(p.normal_force);
+    frictions.push_back(p.friction);
+  }
+  py::dict out;
+  out["effects"] = effects;
+  out["bodies"] = bodies;
+  out["partners"] = partners;
+  out["nodes"] = array_of(std::move(nodes), 0);
+  out["positions"] = array_of(std::move(positions));
+  out["gaps"] = array_of(std::move(gaps), 0);
+  out["normals"] = array_of(std::move(normals));
+  out["normal_forces"] = array_of(std::move(normal_forces));
+  out["frictions"] = array_of(std::move(frictions));
+  out["areas"] = array_of(std::move(areas), 0);
+  return out;
+}
+
+py::list contact_pairs(HostedWorld& world) {
+  py::list out;
+  for (const ContactPair& p :
+       world.work("contact_pairs", [](World& w) { return w.contact_pairs(); }))
+    out.append(py::make_tuple(p.body, p.partner, array_of(p.force), p.normal, p.points));
+  return out;
+}
+
 ResponseInput input_of(const py::handle& given) {
   if (py::isinstance<EffectId>(given)) return ResponseInput::amount_of(given.cast<EffectId>());
   const auto force = given.cast<py::tuple>();
@@ -210,6 +262,8 @@ void bind_reading(HostedWorldClass& world) {
            })
       .def("derivatives", &derivatives)
       .def("orientation", &orientation)
+      .def("contacts", &contacts)
+      .def("contact_pairs", &contact_pairs)
       .def("save", &save)
       .def("load", &load);
 }
