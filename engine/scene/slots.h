@@ -31,6 +31,8 @@ class Slots {
   Index taken() const { return size() - static_cast<Index>(free_.size()); }
   bool holds(Index place) const { return place >= 0 && place < size() && taken_[at(place)] != 0; }
   std::uint32_t generation(Index place) const { return generation_[at(place)]; }
+  // Whether the same things are in the same places.
+  friend bool operator==(const Slots&, const Slots&) = default;
 
  private:
   std::vector<std::uint32_t> generation_;

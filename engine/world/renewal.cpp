@@ -87,6 +87,8 @@ Result<void> World::Impl::renew() {
     const auto renewed = methods.renew(std::move(parts));
     if (!renewed) return Error{renewed.error()};
 
+    // Views of bodies that are gone are not to show others.
+    if (said.builder.body_slots() != next.builder.body_slots()) leave_views();
     carry_settings(instances, said, built.value().instances, next);
     instances = std::move(built.value().instances);
     held_by = std::move(built.value().held_by);

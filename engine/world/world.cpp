@@ -252,8 +252,9 @@ std::vector<double> gravity_mass(const Builder& builder, const SystemParts& part
   return weight;
 }
 
-// Views of positions stay good where nodes are as many as before.
+// Views of positions stay good where nodes are as many as before; others are left to who keeps them.
 void World::Impl::take_over(State&& next) {
+  if (!state.x.empty() && state.x.size() != next.x.size()) leave_views();
   const auto keep = [](std::vector<Vec3>& present, std::vector<Vec3>& list) {
     if (present.size() != list.size()) return;
     std::copy(list.begin(), list.end(), present.begin());

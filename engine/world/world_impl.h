@@ -15,6 +15,11 @@ struct ScenePart {
   std::uint64_t fingerprint = 0;
 };
 
+// Positions and velocities that a world has no more use for and that a host still looks at.
+struct LeftViews {
+  std::vector<std::vector<Vec3>> numbers;
+};
+
 struct World::Impl {
   Impl(WorldOptions given, std::unique_ptr<Parallel> threads)
       : options(std::move(given)),
@@ -24,6 +29,7 @@ struct World::Impl {
     said.builder.set_world(WorldNumbers::next_world());
     methods.set_interrupt([this] { return interrupt.raised(); });
   }
+  ~Impl() { leave_views(); }
 
   // What the host said.
   WorldOptions options;
@@ -42,8 +48,10 @@ struct World::Impl {
   CompileReport compile_report;
   std::vector<ScenePart> described;  // made when first asked for
 
-  // What survives a step, and who makes steps; made by compile().
+  // What survives a step, and who makes steps; made by compile(). x and v stay where they are, see
+  // take_over(); whoever gives them another place calls leave_views() first.
   State state;
+  std::shared_ptr<LeftViews> views = std::make_shared<LeftViews>();
   StateLayout layout;
   // That the scene begins with, where stencils change with what is close.
   std::vector<std::shared_ptr<const StencilPool>> first_stencils;
@@ -68,6 +76,8 @@ struct World::Impl {
   Assembly& assembly() { return methods.chosen().assembly(); }
   std::span<const double> pool_memory() const { return layout.of_pools(state.extra); }
 
+  // Hands the numbers of positions and velocities to who holds World::keep_views(), if anybody does.
+  void leave_views();
   // Evaluates forces and multipliers at the state.
   void evaluate_state(Want want);
   // phi - target - C lambda of all compliant rows at the state.

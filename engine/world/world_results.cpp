@@ -38,6 +38,18 @@ std::span<const Vec3> World::velocities(BodyId body) const {
   return part(*b, impl_->state.v);
 }
 
+std::shared_ptr<const void> World::keep_views() const {
+  return impl_->views;
+}
+
+void World::Impl::leave_views() {
+  if (views.use_count() > 1) {
+    views->numbers.push_back(std::move(state.x));
+    views->numbers.push_back(std::move(state.v));
+  }
+  views = std::make_shared<LeftViews>();
+}
+
 std::span<const Vec3> World::rest_positions(BodyId body) const {
   return mesh(body).nodes;
 }

@@ -136,6 +136,9 @@ class ISOCHOR_API World {
   // are and put new numbers in; where the structure changes, and with the world, they end.
   std::span<const Vec3> positions(BodyId body) const;
   std::span<const Vec3> velocities(BodyId body) const;
+  // While it is held, views of a compiled world may be read even where they have ended: they then show the
+  // last numbers that they had.
+  std::shared_ptr<const void> keep_views() const;
   std::span<const Vec3> rest_positions(BodyId body) const;
   // The mesh as the engine uses it (raised to Tet10 when the element asked for it).
   const Mesh& mesh(BodyId body) const;

@@ -1,0 +1,74 @@
+#include "hosted_world.h"
+
+namespace isochor::python {
+
+void LogLines::pass_on() {
+  std::vector<std::string> lines;
+  {
+    const std::lock_guard locked(lines_->lock);
+    if (lines_->waiting.empty()) return;
+    lines.swap(lines_->waiting);
+  }
+  try {
+    const py::object logger = py::module_::import("logging").attr("getLogger")("isochor");
+    for (const std::string& line : lines) logger.attr("warning")("%s", line);
+  } catch (py::error_already_set& error) {
+    error.discard_as_unraisable("log of an isochor.World");
+  }
+}
+
+HostedWorld::HostedWorld(OptionParts parts) {
+  names_.statics = parts.statics;
+  names_.gravity = parts.options.gravity;
+  parts.options.log = common_.log.writer();
+  own_.emplace(need(World::create(std::move(parts.options))));
+  world_ = &*own_;
+  listen();
+}
+
+HostedWorld::HostedWorld(World& world, PartNames names, Common common, std::shared_ptr<void> owner)
+    : owner_(std::move(owner)), world_(&world), names_(std::move(names)), common_(std::move(common)) {}
+
+// A clone writes to the log of the world that it is a clone of.
+HostedWorld::HostedWorld(World&& world, const HostedWorld& like)
+    : own_(std::move(world)), world_(&*own_), names_(like.names_) {
+  common_.log = like.common_.log;
+  listen();
+}
+
+void HostedWorld::listen() {
+  world_->stop_when([stop = common_.interruption] { return stop->asked(); });
+}
+
+std::unique_ptr<HostedWorld> HostedWorld::clone(int threads) {
+  Result<World> made = work("clone", [threads](World& w) { return w.clone(threads); });
+  return std::unique_ptr<HostedWorld>(new HostedWorld(need(std::move(made)), *this));
+}
+
+void HostedWorld::set_progress(const py::object& callback) {
+  const Turn turn(*common_.callers, "progress");
+  progress_ = callback;
+  if (callback.is_none()) {
+    world_->on_progress({});
+    return;
+  }
+  world_->on_progress([this](const ProgressInfo& info) {
+    common_.interruption->call(
+        [&] { progress_(info.time, info.target, info.iteration, info.force_residual, info.row_residual); });
+  });
+}
+
+StepReport HostedWorld::step(const char* call, const std::function<StepReport(World&)>& f) {
+  StepReport report;
+  {
+    const Turn turn(*common_.callers, call);
+    const PassOn log{common_.log};
+    common_.interruption->begin();
+    const py::gil_scoped_release free;
+    report = f(*world_);
+  }
+  common_.interruption->end();
+  return report;
+}
+
+}  // namespace isochor::python

@@ -1,0 +1,20 @@
+// Results of the engine as dictionaries, which the package gives names and units.
+#pragma once
+
+#include "hosted_world.h"
+
+namespace isochor::python {
+
+using HostedWorldClass = py::class_<HostedWorld, std::shared_ptr<HostedWorld>>;
+
+py::dict dict_of(const StageSeconds& seconds);
+void put_counters(const SolveCounters& work, py::dict& out);
+py::dict dict_of(const StepReport& report);
+py::dict dict_of(const Energies& energies);
+py::list list_of(const std::vector<Gauge>& gauges);
+
+void bind_changing(HostedWorldClass& world);
+void bind_stepping(HostedWorldClass& world);
+void bind_reading(HostedWorldClass& world);
+
+}  // namespace isochor::python

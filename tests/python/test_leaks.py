@@ -1,0 +1,64 @@
+"""Nothing is left of worlds that are gone."""
+
+import gc
+import os
+import resource
+
+import pytest
+
+import isochor as iso
+
+
+def resident():
+    with open("/proc/self/statm", encoding="ascii") as file:
+        return int(file.read().split()[1]) * resource.getpagesize()
+
+
+def live_once(mesh, material):
+    world = iso.World(threads=1, gravity=(0, 0, -9.81))
+    body = world.add_body(mesh, material)
+    world.add(iso.dirichlet(body, surfaces="z0"))
+    world.progress = lambda progress: None
+    world.advance(0.01)
+    x = world.positions(body)
+    return float(x[0, 0])
+
+
+def test_ten_thousand_worlds_leave_nothing():
+    mesh, material = iso.box_mesh(), iso.neo_hookean(young=1e5, poisson=0.3)
+    for _ in range(1000):
+        live_once(mesh, material)
+    gc.collect()
+    before = resident()
+    for _ in range(10_000):
+        live_once(mesh, material)
+    gc.collect()
+    grown = resident() - before
+    # A hundred bytes a world would be a megabyte; a leaked world has some hundred kilobytes.
+    assert grown < 8e6, f"{grown / 1e6:.1f} MB more after 10,000 worlds"
+
+
+def test_scenes_clones_and_exceptions_leave_nothing():
+    scene = iso.Scene.load("tube", {"analysis.steps": 1, "bodies[0].element": "tet4"})
+    mesh = iso.box_mesh()
+    world = iso.World(threads=1)
+    body = world.add_body(mesh, iso.neo_hookean(young=1e5, poisson=0.3))
+    world.compile()
+
+    def churn():
+        world.clone()
+        iso.WorldBatch(world, 2)[0].advance(0.01)
+        try:
+            world.set_positions(body, [[0, 0]])
+        except iso.Error:
+            pass
+        scene.override({"analysis.steps": 2}).to_dict()
+
+    for _ in range(200):
+        churn()
+    gc.collect()
+    before = resident()
+    for _ in range(1000):
+        churn()
+    gc.collect()
+    assert resident() - before < 16e6
