@@ -1,4 +1,4 @@
-// Saved states of a world. Version 2: magic, version and length in bytes; fingerprints of the parts of the
+// Saved states of a world, version 3: magic, version and length in bytes; fingerprints of the parts of the
 // scene; time, positions, velocities, multipliers, what schemes and effects keep, amounts, reactions; a
 // checksum over all of it. A state is loaded whole or not at all.
 #include <algorithm>
