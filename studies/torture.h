@@ -34,7 +34,7 @@ struct TortureResult {
   TortureVerdict verdict = TortureVerdict::broken;
   std::string reason;
   int steps = 0, iterations = 0, cutbacks = 0, shifted = 0, projected = 0, rescues = 0, stand_ins = 0;
-  double volume_error = 0, min_J = 0, seconds = 0;
+  double volume_row_residual = 0, min_J = 0, seconds = 0;
   double drift = 0;    // of the quantity that the case watches, relative; 0 where it watches none
   double reached = 1;  // part of the load, or of the time
 };

@@ -153,7 +153,7 @@ TortureResult TortureBench::refused() const {
 
 TortureResult TortureBench::judge(TortureResult out, const StepReport& last, bool equilibrium_exists) {
   const BodyMeasures m = world_->measures(body_);
-  out.volume_error = m.volume_error;
+  out.volume_row_residual = m.volume_row_residual;
   out.min_J = m.min_J;
   // A start that is crushed or turned over has no guard until it has come right.
   const bool guarded = !lives_through_inversion_;
@@ -174,9 +174,9 @@ TortureResult TortureBench::judge(TortureResult out, const StepReport& last, boo
     return out;
   }
   // The rows of an accepted state hold, however it ended.
-  if (out.reached > 0 && m.volume_error > 1e-8) {
+  if (out.reached > 0 && m.volume_row_residual > 1e-8) {
     out.verdict = TortureVerdict::broken;
-    out.reason = "volume rows are off by " + std::to_string(m.volume_error);
+    out.reason = "volume rows are off by " + std::to_string(m.volume_row_residual);
     return out;
   }
   if (last.status == StepStatus::converged) {

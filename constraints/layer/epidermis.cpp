@@ -1,4 +1,4 @@
-// A thin skin that resists changes of area and nothing else: one row a face, of a strain that stiffens.
+// A thin layer that resists changes of area and nothing else: one row a face, of a strain that stiffens.
 #include <cmath>
 #include <limits>
 

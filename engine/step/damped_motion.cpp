@@ -23,7 +23,7 @@ double stiffness_over_mass(const SystemParts& parts, std::span<const double> res
 
 }  // namespace
 
-// Without inertia from where the motion has settled, and a look at that end.
+// Without inertia from where the motion has settled, and a check of that end.
 SaddleReport Stepper::settle(double h, SaddleProblem& problem, SaddleReport total) {
   problem.mass_scale = 0;
   SaddleReport last = solve(problem, saddle_options(context_.options, Allowance{2 * patience, 4 * patience}));
@@ -32,7 +32,7 @@ SaddleReport Stepper::settle(double h, SaddleProblem& problem, SaddleReport tota
   const Surroundings::Found around = surroundings_.renew(trial_.x, Surroundings::Around::solution);
   if (around.changed || around.passing > 0) {
     last.status = SaddleStatus::passed_through;
-    // Stencils looked at positions that are not to be.
+    // Stencils were renewed around positions that are not to be.
     if (auto back = surroundings_.restore(context_.pool_memory()); !back) last.message = back.error();
   } else if (end_.admits(h, problem, trial_, last)) {
     take(h, false);

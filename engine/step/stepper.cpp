@@ -19,7 +19,7 @@ struct Stepper::Attempt {
 
 namespace {
 
-constexpr int most_looks = 8;  // around one increment
+constexpr int most_climbs = 8;  // of one increment, as stencils are renewed around its end
 
 // Within a percent of balance, and no step leads further.
 bool stuck_close_by(const SaddleReport& r) {
@@ -201,9 +201,9 @@ Stepper::Attempt Stepper::begin(double h) {
   return a;
 }
 
-// One climb, and a look around its end; true when it has to be made once more.
-bool Stepper::solve_and_renew(Attempt& a, const Allowance& allowance, int look) {
-  const bool last = look + 1 == most_looks;
+// One climb, and stencils renewed around its end; true when it has to be made once more.
+bool Stepper::solve_and_renew(Attempt& a, const Allowance& allowance, int climbs) {
+  const bool last = climbs + 1 == most_climbs;
   a.left = what_is_left(allowance, a.report);
   if (a.left.iterations <= 0 || a.left.factorizations <= 0) {
     a.report.status = SaddleStatus::iteration_limit;
@@ -260,8 +260,8 @@ SaddleReport Stepper::attempt(double h, const Allowance& allowance) {
   given_back_.clear();
   Attempt a = begin(h);
   a.left = allowance;
-  for (int look = 0; a.around.error.empty(); ++look) {
-    if (!solve_and_renew(a, allowance, look)) break;
+  for (int climbs = 0; a.around.error.empty(); ++climbs) {
+    if (!solve_and_renew(a, allowance, climbs)) break;
   }
   if (!a.around.error.empty()) {
     a.report.status = SaddleStatus::singular;
@@ -270,7 +270,7 @@ SaddleReport Stepper::attempt(double h, const Allowance& allowance) {
   if (a.report.status == SaddleStatus::converged || may_keep(a, allowance)) {
     take(h, a.jumps);
   } else if (a.around.error.empty()) {
-    // Stencils looked at positions that are not to be; results are about those of the state.
+    // Stencils were renewed around positions that are not to be; results are about those of the state.
     if (auto r = surroundings_.restore(context_.pool_memory()); !r) a.report.message = r.error();
   }
   return std::move(a.report);

@@ -51,7 +51,7 @@ class Stepper {
  private:
   struct Attempt;
   Attempt begin(double h);
-  bool solve_and_renew(Attempt& a, const Allowance& allowance, int look);
+  bool solve_and_renew(Attempt& a, const Allowance& allowance, int climbs);
   SaddleReport climb(Attempt& a);
   void judge(double h, const SaddleProblem& problem, SaddleReport& report);
   void refine_gradients(const SaddleProblem& problem, SaddleOptions options, SaddleReport& report);

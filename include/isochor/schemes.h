@@ -32,7 +32,7 @@ ISOCHOR_API SchemePtr newmark();
 
 // The implicit midpoint rule: second order, no damping of its own; forces, supports and rows are met in the
 // middle of a step, so that the end of a step misses hard rows by what is of second order in its length, and
-// results at the end (volume error, residual) say so. Multipliers belong to the middle and do not oscillate.
+// the residuals of rows at the end say so. Multipliers belong to the middle and do not oscillate.
 // Not for contact or other rows with bounds.
 ISOCHOR_API SchemePtr implicit_midpoint();
 

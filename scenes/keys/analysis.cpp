@@ -39,7 +39,7 @@ void describe(Visitor& io, AnalysisDef& a) {
                      a.step);
   io.optional_number(
       Key("path_step", "m",
-          "statics: [follow the path](solver.md#steps-increments-statuses) of equilibria through limit "
+          "statics: [follow the path](solver.md#paths) of equilibria through limit "
           "points in steps of this length, at most `steps` of them, until the load factor is `duration`")
           .above(0)
           .absent("none"),

@@ -78,7 +78,7 @@ void add_torture(const TortureCase& c, const Flavor& flavor, const Way& way, dou
                      {"mended", r.shifted + r.projected},
                      {"rescues", r.rescues},
                      {"stand-ins", r.stand_ins},
-                     {"volume error", r.volume_error},
+                     {"volume row residual", r.volume_row_residual},
                      {"min J", r.min_J},
                      {"drift", r.drift},
                      {"reached", r.reached},
@@ -289,7 +289,7 @@ void add_verdicts(std::span<const Measured> all, std::vector<Section>& out) {
   Table t{
       "",
       {"case", "formulation", "method", "runs", "solved", "told", "stopped", "broken", "Newton iterations",
-       "cutbacks", "mended", "stand-ins", "rescues", "largest volume error", "seconds"},
+       "cutbacks", "mended", "stand-ins", "rescues", "largest volume row residual", "seconds"},
       {}};
   for (const auto& name : label_values(torture, "case")) {
     for (const auto& formulation_name : label_values(torture, "formulation")) {
@@ -311,7 +311,7 @@ void add_verdicts(std::span<const Measured> all, std::vector<Section>& out) {
           mended += m.number("mended");
           stand_ins += m.number("stand-ins");
           rescues += m.number("rescues");
-          volume = std::max(volume, m.number("volume error"));
+          volume = std::max(volume, m.number("volume row residual"));
           seconds += m.number("run seconds");
         }
         if (runs == 0) continue;

@@ -340,9 +340,10 @@ TEST_CASE("a soft block sticks and slides on a soft slab around the angle of fri
 
 // Uneven faces, pressed together and sheared: points come to lie at corners of their patches, where what is
 // nearest changes and the distance has a small jump, with the solution of either side on the other. A search
-// creeps up to the jump; stencils made anew around what is nearest there have none (World::Impl::attempt).
-// As in the folds of the scene `bellows`. Without the second look, none of these finds an equilibrium.
-TEST_CASE("a solve that is stuck where what is nearest changes looks around again") {
+// creeps up to the jump; stencils made anew around what is nearest there have none
+// (Stepper::solve_and_renew). As in the folds of the scene `bellows`. Without that, none of these finds an
+// equilibrium.
+TEST_CASE("a solve that is stuck where what is nearest changes renews its stencils") {
   for (const std::uint32_t seed : {206u, 207u, 208u, 223u}) {
     INFO("seed " << seed);
     std::uint32_t state = seed * 7919u + 1;

@@ -40,8 +40,8 @@ void all_solved(const Sample& sample, int repeats = 10, bool at_once = false) {
     INFO(sample.name << " nu " << s.poisson << " step " << s.step << " load " << s.load << " seed " << s.seed
                      << ": " << to_string(r.verdict) << " " << r.reason << ", iterations " << r.iterations
                      << ", cutbacks " << r.cutbacks << ", shifted " << r.shifted << ", projected "
-                     << r.projected << ", rescues " << r.rescues << ", min J " << r.min_J << ", volume error "
-                     << r.volume_error);
+                     << r.projected << ", rescues " << r.rescues << ", min J " << r.min_J
+                     << ", volume row residual " << r.volume_row_residual);
     CHECK(r.verdict == TortureVerdict::solved);
     CHECK(r.rescues == 0);
     if (at_once) CHECK(r.cutbacks == 0);

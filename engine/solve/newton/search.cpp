@@ -178,8 +178,8 @@ bool Newton::search(const SaddleProblem& p, SaddleReport& report) {
   report.step = line.tau * line.longest;
   full_step_ = line.tau == 1;
   pace_.resting = pace_.resting || (gap_.open && line.tau < 1);
-  // Stencils that follow what is close may have a small jump where what is nearest changes: a search that
-  // goes downhill creeps up to it and stays, until they look again.
+  // Stencils that change with what is close may have a small jump where what is nearest changes: a search
+  // that goes downhill creeps up to it and stays, until they are renewed.
   pace_.creeping = line.tau < (s.renews_stencils() ? 0.01 * line.most : 1e-3) ? pace_.creeping + 1 : 0;
   return true;
 }

@@ -1,4 +1,4 @@
-// Newton's method where some pools couple (StencilPool::couples): their forces follow from no potential, the
+// Newton's method where some pools couple (LaggedStencils::couples): their forces follow from no potential, the
 // matrix is unsymmetric, and there is neither an inertia to watch nor a merit function.
 //
 // A step is searched on the size of the residual,
