@@ -137,6 +137,25 @@ VolumeZones ring_zones(const VolumeRegion& region, int rings) {
   return out;
 }
 
+// One entry a pair of rows, ascending; what adds up to one comes in the order in which it was found.
+static std::vector<ComplianceEntry> summed(std::vector<ComplianceEntry> entries) {
+  const auto same = [](const ComplianceEntry& a, const ComplianceEntry& b) {
+    return a.row == b.row && a.col == b.col;
+  };
+  std::stable_sort(entries.begin(), entries.end(), [](const ComplianceEntry& a, const ComplianceEntry& b) {
+    return a.row != b.row ? a.row < b.row : a.col < b.col;
+  });
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    if (kept > 0 && same(entries[kept - 1], entries[k]))
+      entries[kept - 1].value += entries[k].value;
+    else
+      entries[kept++] = entries[k];
+  }
+  entries.resize(kept);
+  return entries;
+}
+
 std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double tau,
                                            std::vector<Index>* corner_nodes) {
   auto rows = std::make_shared<VolumeRowPool>(region.name);
@@ -156,7 +175,7 @@ std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double ta
   };
   std::vector<std::vector<std::pair<Index, double>>> terms(nodes.size());
   std::vector<double> volume(nodes.size(), 0), metric(nodes.size(), 0);
-  std::map<std::pair<Index, Index>, double> compliance;
+  std::vector<ComplianceEntry> compliance;
   const bool per_corner = data.functions == region.corners;
   for (Index s = 0; s < pool.stencils(); ++s) {
     const double V = pool.volume(s), mu = region.shear_modulus_of(s), bulk = region.inverse_bulk_of(s);
@@ -178,7 +197,7 @@ std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double ta
         if (row[k] < row[l]) continue;
         double c = mass * bulk;
         if (tau > 0) c += tau / mu * (mass - share[k] * share[l] / V);
-        if (c != 0) compliance[{row[k], row[l]}] += c;
+        if (c != 0) compliance.push_back({row[k], row[l], c});
       }
     }
   }
@@ -189,7 +208,7 @@ std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double ta
     }
     finish_row(*rows, volume[r], metric[r]);
   }
-  for (const auto& [ends, value] : compliance) rows->compliance.push_back({ends.first, ends.second, value});
+  rows->compliance = summed(std::move(compliance));
   if (corner_nodes) *corner_nodes = nodes;
   return rows;
 }

@@ -197,8 +197,9 @@ Result<VolumeRegion> region_across(Builder& builder, const VolumeDef& def,
       body.reference->points > 1 ? VolumeFunctions::corners : VolumeFunctions::constant;
   auto data = solid_data(*body.reference, builder.rest(), body.global_cells, cells, kind);
   if (!data) return Error{data.error()};
-  const auto pool =
-      std::make_shared<SolidPool>(body.name + "/" + def.name, std::move(data).value(), nullptr, def.strain);
+  const auto pool = std::make_shared<SolidPool>(body.name + "/" + def.name,
+                                                std::make_shared<const SolidData>(std::move(data).value()),
+                                                nullptr, def.strain);
   out.name = def.name;
   out.stencil_pool = builder.add_stencils(pool);
   out.pool = &builder.solid(out.stencil_pool);

@@ -62,9 +62,13 @@ VolumeResponse volume_response(VolumeStrain strain, double j_minus_1) {
 
 }  // namespace
 
-SolidPool::SolidPool(std::string name, SolidData data, std::shared_ptr<const Material> material,
-                     VolumeStrain strain)
-    : name_(std::move(name)), material_(std::move(material)), strain_(strain), data_(std::move(data)) {
+SolidPool::SolidPool(std::string name, std::shared_ptr<const SolidData> data,
+                     std::shared_ptr<const Material> material, VolumeStrain strain)
+    : name_(std::move(name)),
+      material_(std::move(material)),
+      strain_(strain),
+      shared_(std::move(data)),
+      data_(*shared_) {
   if (material_) looks_back_below_ = material_->looks_back_below();
   nodes_ = data_.nodes;
   finish_topology();

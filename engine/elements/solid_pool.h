@@ -25,7 +25,9 @@ struct SolidData {
 class SolidPool final : public StencilPool {
  public:
   // `material` may be null: volume functions alone. Energies are integrated over the points.
-  SolidPool(std::string name, SolidData data, std::shared_ptr<const Material> material, VolumeStrain strain);
+  // The data may be those of other pools, of clones of a world or of the scene before a change.
+  SolidPool(std::string name, std::shared_ptr<const SolidData> data, std::shared_ptr<const Material> material,
+            VolumeStrain strain);
 
   std::string_view name() const override { return name_; }
   StencilShape shape() const override {
@@ -54,7 +56,8 @@ class SolidPool final : public StencilPool {
   std::shared_ptr<const Material> material_;
   VolumeStrain strain_;
   double looks_back_below_ = -std::numeric_limits<double>::infinity();
-  SolidData data_;
+  std::shared_ptr<const SolidData> shared_;
+  const SolidData& data_;  // of shared_
 };
 
 }  // namespace isochor

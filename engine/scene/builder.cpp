@@ -244,6 +244,7 @@ Builder Builder::again() const {
       fresh.material = region.material;
       fresh.density = region.density;
       fresh.cells = region.cells;
+      fresh.stencils = region.stencils;
     }
     next.warnings_.insert(next.warnings_.end(), body.warnings.begin(), body.warnings.end());
     next.place_nodes(body);
@@ -316,19 +317,16 @@ Result<void> Builder::build_solids() {
 
 // The energy of a region for the stencils of a pool: where parameters vary from cell to cell, gathered.
 static std::shared_ptr<const Material> for_stencils(std::shared_ptr<const Material> energy,
-                                                    const MaterialModel& model, SolidData& data) {
-  if (energy && model.field_cells() > 0) {
-    Lists cells = std::move(data.patch_cells);
-    std::vector<double> weight = std::move(data.patch_share);
-    if (weight.empty()) {
-      for (const Index c : data.cell) cells.push({&c, 1});
-      weight.assign(data.cell.size(), 1.0);
-    }
-    if (auto own = energy->gathered(cells, weight)) energy = own;
+                                                    const MaterialModel& model, const SolidData& data) {
+  if (!energy || model.field_cells() == 0) return energy;
+  Lists cells = data.patch_cells;
+  std::vector<double> weight = data.patch_share;
+  if (weight.empty()) {
+    for (const Index c : data.cell) cells.push({&c, 1});
+    weight.assign(data.cell.size(), 1.0);
   }
-  data.patch_cells = {};
-  data.patch_share = {};
-  return energy;
+  auto own = energy->gathered(cells, weight);
+  return own ? own : energy;
 }
 
 // A barrier would falsify the true compression of a compressible material; there it acts only on tets that
@@ -353,6 +351,38 @@ static std::shared_ptr<const Material> element_guard(const BodyData& body, Regio
     return nullptr;
   }
   return std::make_shared<ElementGuard>(std::move(barriers));
+}
+
+// Data of another place than that of the body are of no use.
+static RegionStencils& stencils_at(const BodyData& body, RegionData& region) {
+  if (region.stencils.first_node != body.first_node) region.stencils = {body.first_node, nullptr, {}};
+  return region.stencils;
+}
+
+Result<std::shared_ptr<const SolidData>> Builder::patches_of(const BodyData& body, RegionData& region) const {
+  auto& kept = stencils_at(body, region).patches;
+  if (kept && region.material->field_cells() == 0) return kept;
+  auto made = edge_patch_data(parts_.rest, body.global_cells, region.cells);
+  if (!made) return Error{made.error()};
+  // Where nothing varies from cell to cell, nobody asks for the cells of a patch.
+  const bool fields = region.material->field_cells() > 0;
+  if (!fields) {
+    made.value().patch_cells = {};
+    made.value().patch_share = {};
+  }
+  auto data = std::make_shared<const SolidData>(std::move(made).value());
+  if (!fields) kept = data;
+  return data;
+}
+
+Result<std::shared_ptr<const SolidData>> Builder::cells_of(const BodyData& body, RegionData& region,
+                                                           VolumeFunctions kind) const {
+  auto& kept = stencils_at(body, region).cells[static_cast<std::size_t>(kind)];
+  if (kept) return kept;
+  auto made = solid_data(*body.reference, parts_.rest, body.global_cells, region.cells, kind);
+  if (!made) return Error{made.error()};
+  kept = std::make_shared<const SolidData>(std::move(made).value());
+  return kept;
 }
 
 // Elastic energy and volume functions share a stencil where both live on the cell; edge patches have their
@@ -388,24 +418,22 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
     }
   }
   if (smoothed) {
-    auto patches = edge_patch_data(parts_.rest, body.global_cells, region.cells);
+    auto patches = patches_of(body, region);
     if (!patches) return Error{patches.error()};
-    region.energy = energy = for_stencils(energy, *region.material, patches.value());
-    region.elastic_pool =
-        add_stencils(std::make_shared<SolidPool>(body.name + "/" + region.name + "/patches",
-                                                 std::move(patches).value(), energy, VolumeStrain::linear));
+    region.energy = energy = for_stencils(energy, *region.material, *patches.value());
+    region.elastic_pool = add_stencils(std::make_shared<SolidPool>(
+        body.name + "/" + region.name + "/patches", patches.value(), energy, VolumeStrain::linear));
     energy = element_guard(body, region);
   }
   for (std::size_t strain = 0; strain < 2; ++strain) {
     const bool wanted = region.volume_wanted[strain];
     const bool needed = strain == 0 && energy && !region.volume_wanted[0] && !region.volume_wanted[1];
     if (!wanted && !needed) continue;
-    auto data = solid_data(*body.reference, parts_.rest, body.global_cells, region.cells,
-                           wanted ? kind : VolumeFunctions::none);
+    auto data = cells_of(body, region, wanted ? kind : VolumeFunctions::none);
     if (!data) return Error{data.error()};
-    if (energy && !smoothed) region.energy = energy = for_stencils(energy, *region.material, data.value());
-    const Index pool = add_stencils(std::make_shared<SolidPool>(
-        body.name + "/" + region.name, std::move(data).value(), energy, static_cast<VolumeStrain>(strain)));
+    if (energy && !smoothed) region.energy = energy = for_stencils(energy, *region.material, *data.value());
+    const Index pool = add_stencils(std::make_shared<SolidPool>(body.name + "/" + region.name, data.value(),
+                                                                energy, static_cast<VolumeStrain>(strain)));
     if (wanted) region.volume_pool[strain] = pool;
     if (energy && !smoothed) region.elastic_pool = pool;
     energy = nullptr;  // once only

@@ -134,6 +134,14 @@ class EffectSource {
   virtual Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const = 0;
 };
 
+// Rest data of the stencils of a region, kept for when it is built again: of patches, and of cells by the
+// kind of their volume functions. They hold scene nodes and are good for a body at one place.
+struct RegionStencils {
+  Index first_node = -1;
+  std::shared_ptr<const SolidData> patches;
+  std::array<std::shared_ptr<const SolidData>, 3> cells;  // by VolumeFunctions
+};
+
 struct RegionData {
   std::string name;
   MaterialPtr material;
@@ -145,6 +153,7 @@ struct RegionData {
   Index elastic_pool = -1;
   std::array<Index, 2> volume_pool{-1, -1};  // by VolumeStrain
   std::array<bool, 2> volume_wanted{};
+  RegionStencils stencils;
   std::vector<std::uint8_t> guarded;  // by cell: 1 where the element guard acts; empty: nowhere
 };
 
@@ -293,6 +302,9 @@ class ISOCHOR_API Builder {
   Result<std::vector<RegionData*>> regions_for(BodyId id, const std::string& region, const std::string& who);
   void place_nodes(BodyData& body);
   Result<void> build_region(BodyData& body, RegionData& region);
+  Result<std::shared_ptr<const SolidData>> patches_of(const BodyData& body, RegionData& region) const;
+  Result<std::shared_ptr<const SolidData>> cells_of(const BodyData& body, RegionData& region,
+                                                    VolumeFunctions kind) const;
 
   Slots slots_;
   std::vector<BodyData> bodies_;  // by place

@@ -134,7 +134,8 @@ void add_region(const RecoveryInput& in, const RegionData& region, std::vector<C
   const ReferenceElement& element = *in.body.reference;
   auto data = solid_data(element, in.parts.rest, in.body.global_cells, region.cells, VolumeFunctions::none);
   if (!data) return;
-  const SolidPool pool("", std::move(data).value(), nullptr, VolumeStrain::linear);
+  const SolidPool pool("", std::make_shared<const SolidData>(std::move(data).value()), nullptr,
+                       VolumeStrain::linear);
   const bool smoothed = in.body.element == Element::tet4_edge_smoothed;
   const auto energy = smoothed ? nullptr : region.energy;
   for (Index s = 0; s < pool.stencils(); ++s) {
@@ -240,7 +241,8 @@ BodyMeasures measure_body(const BodyData& body, const SystemParts& parts, std::s
     auto data =
         solid_data(*body.reference, parts.rest, body.global_cells, region.cells, VolumeFunctions::none);
     if (!data) continue;
-    const SolidPool pool("", std::move(data).value(), nullptr, VolumeStrain::linear);
+    const SolidPool pool("", std::make_shared<const SolidData>(std::move(data).value()), nullptr,
+                         VolumeStrain::linear);
     VolumeMeasures part;
     part.name = region.name;
     for (Index s = 0; s < pool.stencils(); ++s) {
