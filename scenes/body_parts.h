@@ -1,4 +1,5 @@
-// What a scene file says of a body beyond a mesh: lattices around surfaces, and numbers cell by cell.
+// Bodies as a scene says them: made, and what they have beyond a mesh (lattices around surfaces, numbers cell
+// by cell).
 #pragma once
 
 #include "isochor/lattice.h"
@@ -16,6 +17,15 @@ struct LatticeBody {
   DisplaySurface surface;
 };
 Result<LatticeBody> make_lattice(const LatticeMesh& def, const std::string& folder);
+
+// A body with its mesh read and its materials made; messages start with `where`. How it moves at the start is
+// left to who adds it. A mesh that is `given` takes the place of the body's own.
+struct MadeBody {
+  BodyDef def;
+  DisplaySurface surface;  // of a lattice
+};
+Result<MadeBody> make_body(const SceneBody& body, const std::string& folder, const std::string& where,
+                           const Mesh* given = nullptr);
 
 // The numbers of a field, in place or from a file: one a cell of the mesh.
 Result<std::vector<double>> read_field(const CellField& field, const std::string& folder);

@@ -246,6 +246,9 @@ struct BuildOptions {
 // `folder`.
 Result<MaterialPtr> make_material(const MaterialDef& def, const std::string& folder = "");
 
+// The time scheme that an analysis asks for.
+SchemePtr make_scheme(const AnalysisDef& analysis);
+
 // Reads meshes, makes materials and effects, compiles the world. Errors are those of bad input.
 Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options = {});
 

@@ -43,7 +43,7 @@ Result<EffectPtr> make(const ContactDef& touch, const std::string& where, Effect
   }
   if (auto loaded = adder.solids().load(def.obstacle); !loaded)
     return Error{where + ".obstacle: " + loaded.error()};
-  adder.built().obstacles.push_back(def.obstacle);
+  adder.obstacles.push_back(def.obstacle);
   return contact(std::move(def));
 }
 

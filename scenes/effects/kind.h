@@ -1,6 +1,7 @@
 // What the rest of scenes/ knows of an effect: an entry of the table in list.h.
 #pragma once
 
+#include <functional>
 #include <type_traits>
 
 #include "scenes/check_values.h"
@@ -23,21 +24,22 @@ enum class EffectPhase : std::uint8_t {
   contact,  // after all supports: what they hold wholly has no contact
 };
 
-// Where the effects of a scene are added while it is built.
+// Where the effects of a scene go when they are made: into a world, or to whom asks for one.
 class EffectAdder {
  public:
-  EffectAdder(const SceneDef& scene, SceneParts* parts, BuiltScene& built)
-      : scene_(scene), parts_(parts), built_(built), solids_(scene.folder) {}
+  using Add = std::function<Result<void>(const EffectKind&, EffectPtr)>;
+  EffectAdder(const SceneDef& scene, Add add) : scene_(scene), add_(std::move(add)), solids_(scene.folder) {}
 
   const SceneDef& scene() const { return scene_; }
-  BuiltScene& built() { return built_; }
   SolidFiles& solids() { return solids_; }  // each file is read once
-  Result<void> add(const EffectKind& kind, EffectPtr effect);
+  Result<void> add(const EffectKind& kind, EffectPtr effect) { return add_(kind, std::move(effect)); }
+
+  // By contact and by rigid body, with what their files hold.
+  std::vector<Obstacle> obstacles, rigid_shapes;
 
  private:
   const SceneDef& scene_;
-  SceneParts* parts_;
-  BuiltScene& built_;
+  Add add_;
   SolidFiles solids_;
 };
 

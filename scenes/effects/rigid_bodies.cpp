@@ -23,7 +23,7 @@ Result<EffectPtr> make(const RigidBodyDef& body, const std::string& where, Effec
   RigidBodyDef def = body;
   if (auto loaded = adder.solids().load(def.shape); !loaded)
     return Error{where + ".shape: " + loaded.error()};
-  adder.built().rigid_shapes.push_back(def.shape);
+  adder.rigid_shapes.push_back(def.shape);
   return rigid_body(std::move(def));
 }
 

@@ -314,11 +314,17 @@ void Reader::optional_angle(const Key& radians, const Key& degrees, double& valu
 
 void Reader::body(const Key& key, BodyId& value) {
   const Json* j = find(key.name);
-  if (!j) return;
+  if (!j) {
+    if (!context_.ids.empty()) value = context_.ids.front();
+    return;
+  }
   if (!j->is_string()) return fail_type(at(key.name), "the name of a body", *j);
+  if (context_.bodies.empty())
+    return context_.fail(at(key.name), shown(*j) + " names no body: there is none; add one first");
   const auto it = std::find(context_.bodies.begin(), context_.bodies.end(), j->get_ref<const std::string&>());
   if (it == context_.bodies.end()) return fail_word(key.name, *j, context_.bodies);
-  value = static_cast<BodyId>(it - context_.bodies.begin());
+  const auto n = static_cast<std::size_t>(it - context_.bodies.begin());
+  value = context_.ids.empty() ? BodyId{n} : context_.ids[n];
 }
 
 void Reader::optional_body(const Key& key, std::optional<BodyId>& value) {

@@ -16,7 +16,10 @@ using keys::Key;
 // What a whole file shares.
 struct ReadContext {
   std::string error;
-  std::vector<std::string> bodies;
+  std::vector<std::string> bodies;  // that keys may name
+  // Of these bodies, where there is a world; empty: the n-th name stands for BodyId{n}, and a key that is
+  // absent says nothing.
+  std::vector<BodyId> ids = {};
   AnalysisType analysis = AnalysisType::statics;
 
   void fail(const std::string& where, const std::string& message) {

@@ -2,10 +2,10 @@
 
 #include <filesystem>
 #include <fstream>
-#include <set>
 #include <sstream>
 
 #include "scenes/json/overrides.h"
+#include "scenes/json/parse.h"
 #include "scenes/json/reader.h"
 #include "scenes/json/writer.h"
 #include "scenes/keys/parts.h"
@@ -17,63 +17,6 @@ using scene_json::Json;
 namespace {
 
 constexpr std::uintmax_t kMostBytes = 64u << 20;
-constexpr int kMostDepth = 64;
-
-// Finds what the JSON library lets pass: keys given twice and nesting without end.
-class StrictParse {
- public:
-  bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
-    if (depth > kMostDepth) {
-      fail("it is nested more than " + std::to_string(kMostDepth) + " deep");
-      return false;
-    }
-    if (event == Json::parse_event_t::object_start) keys_.emplace_back();
-    if (event == Json::parse_event_t::object_end && !keys_.empty()) keys_.pop_back();
-    if (event == Json::parse_event_t::key && !keys_.empty()) {
-      const auto& key = parsed.get_ref<const std::string&>();
-      if (!keys_.back().insert(key).second)
-        fail("key \"" + key + "\" is given twice in one object; keep one");
-    }
-    return true;
-  }
-  const std::string& error() const { return error_; }
-
- private:
-  void fail(std::string message) {
-    if (error_.empty()) error_ = std::move(message);
-  }
-  std::vector<std::set<std::string>> keys_;
-  std::string error_;
-};
-
-// "[json.exception...] parse error at line 3, column 5: syntax error..." without its bracket.
-std::string plain(const char* what) {
-  std::string text = what;
-  if (const auto end = text.find("] "); !text.empty() && text[0] == '[' && end != std::string::npos) {
-    text = text.substr(end + 2);
-  }
-  // Bytes of a broken file must not reach a terminal.
-  for (char& c : text) {
-    const auto u = static_cast<unsigned char>(c);
-    if (u < 0x20 || u >= 0x7f) c = '?';
-  }
-  return text.size() > 300 ? text.substr(0, 300) + "..." : text;
-}
-
-Result<Json> parse_text(const std::string& text, const std::string& source) {
-  if (text.find_first_not_of(" \t\r\n") == std::string::npos) {
-    return Error{source + ": the file is empty; a scene needs at least \"bodies\""};
-  }
-  StrictParse strict;
-  try {
-    Json json = Json::parse(text, std::ref(strict));
-    if (!strict.error().empty()) return Error{source + ": " + strict.error()};
-    if (!json.is_object()) return Error{source + ": a scene file is one object {...}"};
-    return json;
-  } catch (const std::exception& e) {
-    return Error{source + ": " + (strict.error().empty() ? plain(e.what()) : strict.error())};
-  }
-}
 
 Result<SceneDef> from_json(const Json& json, const std::string& source, const std::string& folder) {
   SceneDef scene;
@@ -83,7 +26,7 @@ Result<SceneDef> from_json(const Json& json, const std::string& source, const st
     keys::describe(reader, scene);
     reader.finish();
   } catch (const std::exception& e) {
-    return Error{source + ": " + plain(e.what())};
+    return Error{source + ": " + scene_json::plain(e.what())};
   }
   if (!context.error.empty()) return Error{source + ": " + context.error};
   scene.folder = folder;
@@ -116,7 +59,9 @@ std::string described(const std::string& source, const Overrides& overrides) {
 
 Result<SceneDef> parse_scene(const std::string& text, const std::string& source, const std::string& folder,
                              const Overrides& overrides) {
-  auto json = parse_text(text, source);
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+    return Error{source + ": the file is empty; a scene needs at least \"bodies\""};
+  auto json = scene_json::parse_object(text, source);
   if (!json) return Error{json.error()};
   if (auto r = apply(json.value(), overrides); !r) return Error{source + ": " + r.error()};
   return from_json(json.value(), described(source, overrides), folder);

@@ -18,15 +18,52 @@ ISOCHOR_WORDS(Solver, ISOCHOR_WORD(Solver, automatic), ISOCHOR_WORD(Solver, mump
               ISOCHOR_WORD(Solver, cholmod), ISOCHOR_WORD(Solver, eigen), ISOCHOR_WORD(Solver, iterative),
               ISOCHOR_WORD(Solver, multifrontal), ISOCHOR_WORD(Solver, cholmod_supernodal));
 
-void describe(Visitor& io, AnalysisDef& a) {
+void describe_scheme(Visitor& io, AnalysisDef& a, AnalysisType standard) {
   const AnalysisDef d;
-  io.about("analysis", "Statics or dynamics, the steps, and the options of the world.");
-  io.word({"type", "", "what is solved for"}, a.type, d.type);
+  io.word({"type", "", "what is solved for"}, a.type, standard);
   io.word({"scheme", "", "dynamics: one of the [time schemes](time-schemes.md)"}, a.scheme, d.scheme);
   io.number(Key("spectral_radius", "", "of `generalized_alpha`: what a step leaves of the fastest motion")
                 .least(0)
                 .most(1),
             a.spectral_radius, d.spectral_radius);
+}
+
+void describe_solving(Visitor& io, WorldOptions& options) {
+  const WorldOptions o;
+  io.word({"method", "", "[how saddle points are solved](solver.md#methods)"}, options.method, o.method);
+  io.integer(Key("sweeps", "", "of method `position_based`, a step").least(1), options.sweeps, o.sweeps);
+  io.word({"solver", "", "[who solves the linear systems](solver.md#linear-solvers)"}, options.solver,
+          o.solver);
+  io.integer(Key("max_iterations", "",
+                 "Newton iterations an increment; [more](solver.md#persistence) for bodies in motion")
+                 .least(1),
+             options.max_iterations, o.max_iterations);
+  io.word({"definiteness", "", "[Hessians of elements](materials/definiteness.md#policies)"},
+          options.definiteness, o.definiteness);
+  io.number(Key("force_tolerance", "", "unbalanced force, relative to the forces that cancel").above(0),
+            options.force_tolerance, o.force_tolerance);
+  io.number(Key("row_tolerance", "", "what rows may leave over, relative to their measure").above(0),
+            options.row_tolerance, o.row_tolerance);
+  io.number(Key("smallest_fraction", "", "of a step, down to which increments that fail are halved")
+                .above(0)
+                .most(1),
+            options.smallest_fraction, o.smallest_fraction);
+  io.flag(
+      {"transient_rescue", "", "statics: a [damped motion](solver.md#the-ladder) before a load is given up"},
+      options.transient_rescue, o.transient_rescue);
+  io.number(Key("time_error", "",
+                "dynamics: [largest local error](time-schemes.md#control-of-the-time-error) of positions an "
+                "increment may have, relative to the scene's length; 0: no control")
+                .least(0),
+            options.time_error, o.time_error);
+  io.flag({"consistent_mass", "", "dynamics: the consistent mass matrix, not the lumped one"},
+          options.consistent_mass, o.consistent_mass);
+}
+
+void describe(Visitor& io, AnalysisDef& a) {
+  const AnalysisDef d;
+  io.about("analysis", "Statics or dynamics, the steps, and the options of the world.");
+  describe_scheme(io, a, d.type);
   io.number(Key("duration", "s", "statics: final load factor").above(0), a.duration, d.duration);
   io.not_both("steps", "step");
   io.integer(Key("steps", "", "results are reported this often").least(1).most(1'000'000), a.steps,
@@ -44,35 +81,7 @@ void describe(Visitor& io, AnalysisDef& a) {
           .above(0)
           .absent("none"),
       a.path_step);
-  const WorldOptions& o = d.options;
-  io.word({"method", "", "[how saddle points are solved](solver.md#methods)"}, a.options.method, o.method);
-  io.integer(Key("sweeps", "", "of method `position_based`, a step").least(1), a.options.sweeps, o.sweeps);
-  io.word({"solver", "", "[who solves the linear systems](solver.md#linear-solvers)"}, a.options.solver,
-          o.solver);
-  io.integer(Key("max_iterations", "",
-                 "Newton iterations an increment; [more](solver.md#persistence) for bodies in motion")
-                 .least(1),
-             a.options.max_iterations, o.max_iterations);
-  io.word({"definiteness", "", "[Hessians of elements](materials/definiteness.md#policies)"},
-          a.options.definiteness, o.definiteness);
-  io.number(Key("force_tolerance", "", "unbalanced force, relative to the forces that cancel").above(0),
-            a.options.force_tolerance, o.force_tolerance);
-  io.number(Key("row_tolerance", "", "what rows may leave over, relative to their measure").above(0),
-            a.options.row_tolerance, o.row_tolerance);
-  io.number(Key("smallest_fraction", "", "of a step, down to which increments that fail are halved")
-                .above(0)
-                .most(1),
-            a.options.smallest_fraction, o.smallest_fraction);
-  io.flag(
-      {"transient_rescue", "", "statics: a [damped motion](solver.md#the-ladder) before a load is given up"},
-      a.options.transient_rescue, o.transient_rescue);
-  io.number(Key("time_error", "",
-                "dynamics: [largest local error](time-schemes.md#control-of-the-time-error) of positions an "
-                "increment may have, relative to the scene's length; 0: no control")
-                .least(0),
-            a.options.time_error, o.time_error);
-  io.flag({"consistent_mass", "", "dynamics: the consistent mass matrix, not the lumped one"},
-          a.options.consistent_mass, o.consistent_mass);
+  describe_solving(io, a.options);
 }
 
 }  // namespace isochor::keys

@@ -104,7 +104,7 @@ void describe(Visitor& io, MeshSelection& s) {
             s.tolerance, d.tolerance);
 }
 
-void describe(Visitor& io, SceneBody& b) {
+void describe_at_rest(Visitor& io, SceneBody& b) {
   const SceneBody d;
   io.about("body", "A soft body.");
   io.required_text({"name", "", "that effects and results use"}, b.name);
@@ -125,6 +125,11 @@ void describe(Visitor& io, SceneBody& b) {
       b.guard_stiffness);
   io.number(Key("guard_threshold", "", "J below which the barrier acts").above(0), b.guard_threshold,
             d.guard_threshold);
+}
+
+void describe(Visitor& io, SceneBody& b) {
+  const SceneBody d;
+  describe_at_rest(io, b);
   io.vector({"velocity", "m/s", "dynamics: at the start"}, b.velocity, d.velocity);
   io.vector({"angular_velocity", "rad/s", "dynamics: at the start, about the center of mass"},
             b.angular_velocity, d.angular_velocity);

@@ -162,12 +162,16 @@ const CatalogObject& Catalog::of(const std::string& type) const {
   return objects.front();
 }
 
-Catalog catalog_of_scene() {
+Catalog catalog_of(const Object& object) {
   Catalog catalog;
-  SceneDef scene;
   Cataloger all(catalog);
-  describe(all, scene);
+  object.keys(all, object.value);
   return catalog;
+}
+
+Catalog catalog_of_scene() {
+  SceneDef scene;
+  return catalog_of(object_of(scene));
 }
 
 }  // namespace isochor::keys

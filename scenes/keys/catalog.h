@@ -31,6 +31,8 @@ struct Catalog {
 };
 
 Catalog catalog_of_scene();
+// Of any object that has a description, this one first.
+Catalog catalog_of(const Object& object);
 
 // Calls visit(place, object) for every place where an object may stand, "" for the scene, then
 // "bodies[]", "bodies[].mesh", ...

@@ -88,6 +88,11 @@ struct Object {
   void* value;
   void (*keys)(Visitor&, void*);
 };
+template <class T>
+Object object_of(T& value) {
+  return {&value, [](Visitor& io, void* v) { describe(io, *static_cast<T*>(v)); }};
+}
+
 struct List {
   void* list;
   std::size_t (*size)(const void*);
@@ -143,22 +148,22 @@ class Visitor {
 
   template <class T>
   void object(const Key& key, T& value) {
-    object_at(key, as_object(value));
+    object_at(key, object_of(value));
   }
   // May be absent as a whole: all of it has defaults.
   template <class T>
   void settings(const Key& key, T& value) {
-    settings_at(key, as_object(value));
+    settings_at(key, object_of(value));
   }
   // Written where it is `present`.
   template <class T>
   void optional_object(const Key& key, T& value, bool present) {
-    optional_at(key, as_object(value), present);
+    optional_at(key, object_of(value), present);
   }
   template <class T>
   void maybe_object(const Key& key, std::optional<T>& value) {
     T one = value.value_or(T{});
-    if (optional_at(key, as_object(one), value.has_value())) value = std::move(one);
+    if (optional_at(key, object_of(one), value.has_value())) value = std::move(one);
   }
   template <class T>
   void list(const Key& key, std::vector<T>& value) {
@@ -184,15 +189,11 @@ class Visitor {
 
  private:
   template <class T>
-  static Object as_object(T& value) {
-    return {&value, [](Visitor& io, void* v) { describe(io, *static_cast<T*>(v)); }};
-  }
-  template <class T>
   static List as_list(std::vector<T>& value) {
     using All = std::vector<T>;
     return {&value, [](const void* v) { return static_cast<const All*>(v)->size(); },
-            [](void* v, std::size_t i) { return as_object((*static_cast<All*>(v))[i]); },
-            [](void* v) { return as_object(static_cast<All*>(v)->emplace_back()); }};
+            [](void* v, std::size_t i) { return object_of((*static_cast<All*>(v))[i]); },
+            [](void* v) { return object_of(static_cast<All*>(v)->emplace_back()); }};
   }
 };
 

@@ -8,7 +8,11 @@ namespace isochor::keys {
 void describe(Visitor& io, MaterialDef& m);
 void describe(Visitor& io, BoxMeshDef& b);
 void describe(Visitor& io, LatticeMesh& l);
+void describe_at_rest(Visitor& io, SceneBody& b);  // all but how it moves at the start
 void describe(Visitor& io, SceneBody& b);
+// What of an analysis concerns a world: its scheme, and how its steps are solved.
+void describe_scheme(Visitor& io, AnalysisDef& a, AnalysisType standard);
+void describe_solving(Visitor& io, WorldOptions& options);
 void describe(Visitor& io, AnalysisDef& a);
 void describe(Visitor& io, ProbeDef& p);
 void describe(Visitor& io, OrientationDef& o);

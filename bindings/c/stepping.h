@@ -1,0 +1,11 @@
+// Reports of steps as C sees them.
+#pragma once
+
+#include "handles.h"
+
+namespace isochor::c {
+
+// Texts stay those of `from`. Null: nobody asks.
+void show(const StepReport& from, iso_report* out);
+
+}  // namespace isochor::c

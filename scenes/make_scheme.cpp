@@ -1,0 +1,23 @@
+#include "isochor/schemes.h"
+#include "scenes/scene.h"
+
+namespace isochor {
+
+SchemePtr make_scheme(const AnalysisDef& a) {
+  if (a.type == AnalysisType::statics) return a.path_step ? continuation() : statics();
+  switch (a.scheme) {
+    case SchemeWord::implicit_euler:
+      return implicit_euler();
+    case SchemeWord::bdf2:
+      return bdf2();
+    case SchemeWord::generalized_alpha:
+      return generalized_alpha(a.spectral_radius);
+    case SchemeWord::newmark:
+      return newmark();
+    case SchemeWord::implicit_midpoint:
+      return implicit_midpoint();
+  }
+  return nullptr;
+}
+
+}  // namespace isochor
