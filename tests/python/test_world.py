@@ -60,7 +60,7 @@ def test_a_report_tells_what_a_step_did(block):
 
 
 def test_free_fall_is_free_fall():
-    world = iso.World(gravity=(0, 0, -10), threads=1, scheme="newmark")
+    world = iso.World(gravity=(0, 0, -10), threads=1, scheme="implicit_midpoint")
     body = world.add_body(iso.box_mesh(), iso.neo_hookean(young=1e5, poisson=0.3))
     for _ in range(10):
         world.advance(0.01)
@@ -188,12 +188,23 @@ def test_derivatives_are_those_of_differences():
 
 
 def test_warnings_reach_the_log(caplog):
-    made = Block()
+    world = iso.World(threads=1)
+    body = world.add_body(iso.box_mesh(divisions=(2, 2, 2)), iso.neo_hookean(young=1e4, poisson=0.45))
+    world.add(iso.volume(body))
+    world.add(iso.dirichlet(body, everything=True))
     with caplog.at_level("WARNING", "isochor"):
-        made.world.add(iso.dirichlet(made.body, everything=True, name="all"))
-        made.world.advance(0.01)
-    assert any("no free coordinate" in r.message for r in caplog.records)
-    assert made.world.warnings
+        world.compile()
+    assert any("no free coordinate" in record.getMessage() for record in caplog.records)
+    assert any("no free coordinate" in warning for warning in world.warnings)
+
+
+def test_a_world_that_cannot_be_compiled_says_so_each_time(block):
+    block.world.add(iso.dirichlet(block.body, surfaces="nowhere"))
+    for _ in range(2):
+        with pytest.raises(iso.Error) as error:
+            block.world.advance(0.01)
+        assert "nowhere" in sentence(error)
+    assert len(block.world.effects) == 3
 
 
 def test_contacts_hold_the_weight():
