@@ -187,17 +187,6 @@ def test_derivatives_are_those_of_differences():
     assert by_force.reactions[made.clamp.name].force[1] == pytest.approx(-1.0, rel=1e-6)
 
 
-def test_warnings_reach_the_log(caplog):
-    world = iso.World(threads=1)
-    body = world.add_body(iso.box_mesh(divisions=(2, 2, 2)), iso.neo_hookean(young=1e4, poisson=0.45))
-    world.add(iso.volume(body))
-    world.add(iso.dirichlet(body, everything=True))
-    with caplog.at_level("WARNING", "isochor"):
-        world.compile()
-    assert any("no free coordinate" in record.getMessage() for record in caplog.records)
-    assert any("no free coordinate" in warning for warning in world.warnings)
-
-
 def test_a_world_that_cannot_be_compiled_says_so_each_time(block):
     block.world.add(iso.dirichlet(block.body, surfaces="nowhere"))
     for _ in range(2):

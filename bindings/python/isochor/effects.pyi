@@ -291,7 +291,7 @@ def epidermis(
     stiffness: Union[float, None] = ...,
     gamma: float = ...,
 ) -> Effect:
-    """A skin that resists changes of area, see epidermis: young, poisson and thickness, or stiffness.
+    """A layer that resists changes of area, see epidermis: young, poisson and thickness, or stiffness.
 
     Parameters
     ----------
@@ -302,11 +302,11 @@ def epidermis(
     surfaces:
         of the mesh or of the body
     young:
-        [Pa] of the skin; > 0 (default: by stiffness)
+        [Pa] of the layer; > 0 (default: by stiffness)
     poisson:
-        of the skin; > 0, <= 0.5 (default: by stiffness)
+        of the layer; > 0, <= 0.5 (default: by stiffness)
     thickness:
-        [m] of the skin; > 0 (default: by stiffness)
+        [m] of the layer; > 0 (default: by stiffness)
     stiffness:
         [N/m] instead of these three; "inf" keeps every area (default: by the three)
     gamma:

@@ -281,6 +281,7 @@ class World:
         """The core with the changes made that waited; where they fail the handles are as before, too."""
         if self._before is not None:
             before, self._before = self._before, None
+            known = self._core.compile_report()
             try:
                 self._core.compile()
             except Error:
@@ -293,7 +294,9 @@ class World:
                     object.__setattr__(thing, "_described" if isinstance(thing, Body) else "_description", described)
                 raise
             self._lives = True
-            self._compiled.append(self._core.compile_report())
+            # A step that compiled has told so already.
+            if self._core.compile_report() != known:
+                self._compiled.append(self._core.compile_report())
         return self._core
 
     # ---- what is in it ----
