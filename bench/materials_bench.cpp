@@ -128,8 +128,10 @@ void bench_elements(int repeats) {
   auto tets = solid_data(tet4_element(), m.nodes, m.cells, cells, VolumeFunctions::constant);
   auto patches = edge_patch_data(m.nodes, m.cells, cells);
   if (!tets || !patches) std::exit(2);
-  const SolidPool pools[] = {{"tet4", std::move(tets).value(), material, VolumeStrain::linear},
-                             {"edge patches", std::move(patches).value(), material, VolumeStrain::linear}};
+  const SolidPool pools[] = {
+      {"tet4", std::make_shared<const SolidData>(std::move(tets).value()), material, VolumeStrain::linear},
+      {"edge patches", std::make_shared<const SolidData>(std::move(patches).value()), material,
+       VolumeStrain::linear}};
   std::printf("%-28s %14s %14s %14s %14s   ms an evaluation, least (median)\n", "elements", "energy",
               "forces", "Hessians", "definite");
   for (const SolidPool& pool : pools) {

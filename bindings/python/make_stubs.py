@@ -8,8 +8,10 @@
 import sys
 from pathlib import Path
 
-from isochor import effects, materials
-from isochor.keys import effect_types, objects
+sys.path.pop(0)  # the package beside this file has no module
+
+from isochor import effects, materials  # noqa: E402
+from isochor.keys import effect_types, objects  # noqa: E402
 
 HERE = Path(__file__).resolve().parent / "isochor"
 HEAD = '''"""{what} Made by bindings/python/make_stubs.py; edits are lost."""

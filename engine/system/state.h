@@ -1,4 +1,4 @@
-// What survives a step. A checkpoint holds the amounts that a host has set and the reactions besides.
+// What survives a step. A checkpoint holds besides what a host has set (scene/amounts.h).
 #pragma once
 
 #include "engine/base/base.h"

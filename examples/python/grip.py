@@ -6,11 +6,7 @@ import isochor as iso
 def make_gripper():
     world = iso.World(gravity=(0, 0, -9.81))
     rubber = iso.neo_hookean(young=50e3, poisson=0.49, density=1000)
-    ball = world.add(
-        iso.rigid_body(name="ball", shape={"shape": "sphere", "radius": 0.02, "position": (0, 0, 0.02)}, density=300)
-    )
-    world.add(iso.contact(name="table", rigid=ball, friction=0.5))
-    hands = []
+    pads, hands = [], []
     for side, inner, outer in ((-1, "x1", "x0"), (1, "x0", "x1")):
         near, far = 0.022 * side, 0.032 * side
         mesh = iso.box_mesh(
@@ -19,6 +15,12 @@ def make_gripper():
         pad = world.add_body(mesh, rubber)
         world.add(iso.volume(pad))
         hands.append(world.add(iso.dirichlet(pad, surfaces=outer)))
+        pads.append((pad, inner))
+    ball = world.add(
+        iso.rigid_body(name="ball", shape={"shape": "sphere", "radius": 0.02, "position": (0, 0, 0.02)}, density=300)
+    )
+    world.add(iso.contact(name="table", rigid=ball, friction=0.5))
+    for pad, inner in pads:
         world.add(iso.contact(pad, surfaces=inner, against=ball, friction=0.9))
     return world, hands
 

@@ -89,7 +89,7 @@ DESCRIPTIONS = {
     "scheme": (lambda: iso.World(scheme="explicit"), "explicit"),
     "gravity": (lambda: iso.World(gravity=(0, 0)), "gravity"),
     "threads": (lambda: iso.World(threads=-1), "threads"),
-    "tolerance": (lambda: iso.World(force_tolerance=-1.0), "force_tolerance"),
+    "tolerance": (lambda: iso.World(force_tolerance=-1.0), "tolerances must be positive"),
 }
 
 

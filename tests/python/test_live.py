@@ -22,8 +22,8 @@ def test_a_key_of_an_effect_is_set_in_its_place():
         world.advance(0.01)
     held = body.displacements[:, 0].max()
     assert floor.friction == 0.8
-    floor.friction = 0.0
-    assert floor.friction == 0.0
+    floor.friction = 0.05
+    assert floor.friction == 0.05
     report = world.advance(0.01)
     assert report.compile_work == "numbers"
     for _ in range(4):
@@ -62,7 +62,7 @@ def test_effects_come_and_go(block):
     assert abs(block.body.displacements[corner, 0]) < 0.0015
     with pytest.raises(iso.Error) as error:
         grab.amount = 1
-    assert "no longer" in sentence(error)
+    assert "was removed" in sentence(error)
     with pytest.raises(KeyError):
         block.world["grab"]
 

@@ -78,6 +78,18 @@ def test_meshio_reads_what_the_package_reads():
     assert theirs.check().volume == pytest.approx(ours.check().volume)
 
 
+def test_meshio_with_cell_sets_alone():
+    meshio = pytest.importorskip("meshio")
+    box = iso.box_mesh(divisions=(2, 1, 1))
+    half = np.arange(6)
+    sets = {"left": [half, []], "right": [half + 6, []], "floor": [[], np.arange(2)]}
+    faces = box.surfaces["z0"]
+    mesh = meshio.Mesh(np.array(box.points), [("tetra", np.array(box.cells)), ("triangle", faces)], cell_sets=sets)
+    back = iso.Mesh.from_meshio(mesh)
+    assert back.regions == ["left", "right"] and list(back.cell_region) == [0] * 6 + [1] * 6
+    assert np.array_equal(back.surfaces["floor"], faces[:2])
+
+
 def test_meshio_without_volume_cells_is_refused():
     meshio = pytest.importorskip("meshio")
     flat = meshio.Mesh(np.zeros((3, 3)), [("triangle", np.array([[0, 1, 2]]))])

@@ -49,9 +49,9 @@ def test_a_run_has_the_bits_of_the_command_line(tmp_path):
     sets = [part for key, value in SHORT.items() for part in ("--set", f"{key}={value}")]
     subprocess.run([tool, "run", "tube", "--out", tmp_path, "--quiet", *sets], check=True, capture_output=True)
     summary = json.loads((tmp_path / "summary.json").read_text())
-    assert int(str(summary["state_hash"]), 0) == result.state_hash or summary["state_hash"] == result.summary["state_hash"]
-    assert {n: m["value"] for n, m in summary["metrics"].items()} == {
-        n: m["value"] for n, m in result.summary["metrics"].items()
+    assert int(str(summary["state_hash"]), 16) == result.state_hash or summary["state_hash"] == result.summary["state_hash"]
+    assert {m["name"]: m["value"] for m in summary["metrics"]} == {
+        m["name"]: m["value"] for m in result.summary["metrics"]
     }
 
 
@@ -107,7 +107,7 @@ def test_outputs_go_to_a_folder_and_a_run_resumes(tmp_path):
 
 
 def test_a_run_that_finds_nothing_is_a_result_and_no_exception():
-    result = tube(**{"analysis.max_iterations": 1, "analysis.transient_rescue": False}).run(threads=1, page=False)
+    result = tube(**{"analysis.max_iterations": 1, "analysis.smallest_fraction": 1.0, "analysis.transient_rescue": False}).run(threads=1, page=False)
     assert result.status == "not_converged" and result.reason and "not_converged" in repr(result)
 
 

@@ -162,30 +162,22 @@ class Mesh:
                 "tetra, tetra10 and hexahedron"
             )
         cell_type = _MESHIO_CELLS[kinds[0]]
-        groups = mesh.cell_data.get("gmsh:physical")
-        names = {(int(number), int(dim)): name for name, (number, dim) in mesh.field_data.items()}
-
-        def name_of(number: int, dim: int) -> str:
-            return names.get((number, dim), str(number))
-
+        groups = _groups(mesh)
         cells = np.concatenate([mesh.cells[k].data for k in found])
         regions: list[str] = []
-        cell_region = None
-        if groups is not None:
-            numbers = np.concatenate([groups[k] for k in found])
-            distinct, cell_region = np.unique(numbers, return_inverse=True)
-            regions = [name_of(int(number), 3) for number in distinct]
-
+        cell_region = np.zeros(len(cells), int)
+        first = 0
+        for k in found:
+            for name, members in groups[k].items():
+                if name not in regions:
+                    regions.append(name)
+                cell_region[first + members] = regions.index(name)
+            first += len(mesh.cells[k].data)
         surfaces: dict[str, list[np.ndarray]] = {}
         for k, block in enumerate(mesh.cells):
-            if block.type != _MESHIO_FACES[cell_type]:
-                continue
-            if groups is not None:
-                for number in np.unique(groups[k]):
-                    surfaces.setdefault(name_of(int(number), 2), []).append(block.data[groups[k] == number])
-            for name, members in mesh.cell_sets.items():
-                if members[k] is not None and len(members[k]) > 0 and not name.startswith("gmsh:"):
-                    surfaces.setdefault(name, []).append(block.data[np.asarray(members[k], int)])
+            if block.type == _MESHIO_FACES[cell_type]:
+                for name, members in groups[k].items():
+                    surfaces.setdefault(name, []).append(block.data[members])
         points = np.zeros((len(mesh.points), 3))
         points[:, : mesh.points.shape[1]] = mesh.points
         return cls(
@@ -225,6 +217,25 @@ class Mesh:
         self.__init__(**state)  # type: ignore[misc]
 
 
+def _groups(mesh: Any) -> list[dict[str, np.ndarray]]:
+    """Cells of each block of a ``meshio.Mesh`` by the names of the groups that they are in.
+
+    Groups of Gmsh are there twice, as numbers and as cell sets; other programs have one of the two.
+    """
+    out: list[dict[str, np.ndarray]] = [{} for _ in mesh.cells]
+    dimensions = {"triangle": 2, "triangle6": 2, "quad": 2}
+    names = {(int(number), int(dim)): name for name, (number, dim) in mesh.field_data.items()}
+    for k, numbers in enumerate(mesh.cell_data.get("gmsh:physical", ())):
+        dim = dimensions.get(mesh.cells[k].type, 3)
+        for number in np.unique(numbers):
+            out[k][names.get((int(number), dim), str(number))] = np.flatnonzero(numbers == number)
+    for name, members in mesh.cell_sets.items():
+        for k, chosen in enumerate(members):
+            if not name.startswith("gmsh:") and chosen is not None and len(chosen) > 0:
+                out[k].setdefault(name, np.asarray(chosen, int))
+    return out
+
+
 def read_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> Mesh:
     """Reads Gmsh, VTK, VTU, TetGen, Medit or Abaqus.
 
@@ -245,4 +256,4 @@ def box_mesh(
 
     ``divisions`` are cells a side (six tets each); ``cell_type`` is "tet4", "tet10" or "hex8".
     """
-    return Mesh._of(_isochor.box_mesh(lower, upper, tuple(divisions), cell_type))
+    return Mesh._of(_isochor.box_mesh(lower, upper, divisions, cell_type))

@@ -39,8 +39,8 @@ class StepReport:
     row_residual: float = 0.0
     linear_residual: float = 0.0
     compile_work: str = "nothing"
-    """What changes that waited for this step cost: ``nothing``, ``numbers`` (the next step makes new factors, as
-    every step does) or ``structure`` (patterns and the ordering are new as well)."""
+    """What changes since the last step cost: ``nothing``, ``numbers`` (the next step makes new factors, as every
+    step does) or ``structure`` (patterns and the ordering are new as well)."""
     compile_seconds: float = 0.0
     """[s], without the ordering, which counts as ``seconds["analyze"]``."""
     iterations: int = 0

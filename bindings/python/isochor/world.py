@@ -266,6 +266,8 @@ class World:
         self._progress: Callable[[Progress], None] | None = None
         # What the world was when it was last compiled, to go back to where a change fails; None: no change waits.
         self._before: list[tuple[Any, ...]] | None = None
+        self._compiled: list[tuple[str, float]] = []  # work and seconds since the last step
+        self._lives = False  # has been compiled
         self._gravity = np.array(self._options.get("gravity", (0.0, 0.0, 0.0)), float)
 
     # ---- changes that wait for the next step ----
@@ -279,14 +281,22 @@ class World:
         """The core with the changes made that waited; where they fail the handles are as before, too."""
         if self._before is not None:
             before, self._before = self._before, None
+            known = self._core.compile_report()
             try:
                 self._core.compile()
             except Error:
+                # An error of the first compilation stays: there is nothing to go back to.
+                if not self._lives:
+                    raise
                 self._bodies = [thing for thing, _ in before if isinstance(thing, Body)]
                 self._effects = [thing for thing, _ in before if isinstance(thing, LiveEffect)]
                 for thing, described in before:
                     object.__setattr__(thing, "_described" if isinstance(thing, Body) else "_description", described)
                 raise
+            self._lives = True
+            # A step that compiled has told so already.
+            if self._core.compile_report() != known:
+                self._compiled.append(self._core.compile_report())
         return self._core
 
     # ---- what is in it ----
@@ -475,8 +485,12 @@ class World:
         """Stops the step that runs, or else the next one, from any thread: it raises :class:`isochor.Cancelled`."""
         self._core.cancel()
 
-    @staticmethod
-    def _ended(raw: dict[str, Any]) -> StepReport:
+    def _ended(self, raw: dict[str, Any]) -> StepReport:
+        if self._compiled:
+            works = [work for work, _ in self._compiled]
+            raw["compile_work"] = max(works, key=("nothing", "numbers", "structure").index)
+            raw["compile_seconds"] = sum(seconds for _, seconds in self._compiled)
+            self._compiled.clear()
         report = StepReport(**raw)
         if report.status in ("converged", "unfinished"):
             return report
@@ -499,11 +513,11 @@ class World:
         After a step the same array shows the new state; ``.copy()`` keeps one. It may outlive the world, and then
         shows the last numbers. Compiles the world if need be.
         """
-        return self._ready().positions("positions", self._id_of(body, "positions"))
+        return self._ready().positions(self._id_of(body, "positions"))
 
     def velocities(self, body: Body) -> np.ndarray:
         """Velocities now [m/s], shape (n, 3), float64: a read-only view like that of ``positions``."""
-        return self._ready().velocities("velocities", self._id_of(body, "velocities"))
+        return self._ready().velocities(self._id_of(body, "velocities"))
 
     def rest_positions(self, body: Body) -> np.ndarray:
         """Positions at rest [m], shape (n, 3), read-only."""
@@ -661,6 +675,7 @@ class World:
         made._options = dict(self._options)
         made._begin(core)
         made._gravity = self._gravity.copy()
+        made._lives = self._lives
         made._bodies = [Body(made, b._id, b._name, b._described, b._given) for b in self._bodies]
         made._effects = [LiveEffect(made, e._id, e._description) for e in self._effects]
         for mine, its in zip(self._effects, made._effects):

@@ -37,8 +37,8 @@ class HostedBatch : public std::enable_shared_from_this<HostedBatch> {
     return reports;
   }
   // One of the worlds, which keeps the batch alive.
-  std::unique_ptr<HostedWorld> world(Index number) {
-    return std::make_unique<HostedWorld>(batch_[number], names_, common_, shared_from_this());
+  std::shared_ptr<HostedWorld> world(Index number) {
+    return std::make_shared<HostedWorld>(batch_[number], names_, common_, shared_from_this());
   }
 
  private:

@@ -40,9 +40,9 @@ void HostedWorld::listen() {
   world_->stop_when([stop = common_.interruption] { return stop->asked(); });
 }
 
-std::unique_ptr<HostedWorld> HostedWorld::clone(int threads) {
+std::shared_ptr<HostedWorld> HostedWorld::clone(int threads) {
   Result<World> made = work("clone", [threads](World& w) { return w.clone(threads); });
-  return std::unique_ptr<HostedWorld>(new HostedWorld(need(std::move(made)), *this));
+  return std::shared_ptr<HostedWorld>(new HostedWorld(need(std::move(made)), *this));
 }
 
 void HostedWorld::set_progress(const py::object& callback) {

@@ -47,7 +47,7 @@ class HostedWorld {
   HostedWorld(const HostedWorld&) = delete;
   HostedWorld& operator=(const HostedWorld&) = delete;
 
-  std::unique_ptr<HostedWorld> clone(int threads);
+  std::shared_ptr<HostedWorld> clone(int threads);
 
   // Calls f(world) as the only caller and without the interpreter lock; passes on then what the world logged.
   template <class F>

@@ -135,12 +135,18 @@ std::shared_ptr<Mesh> read(const std::string& path, double scale) {
   return std::make_shared<Mesh>(need(read_mesh(path, {scale})));
 }
 
-std::shared_ptr<Mesh> box(const py::object& lower, const py::object& upper,
-                          const std::array<int, 3>& divisions, const std::string& cell_type) {
+std::shared_ptr<Mesh> box(const py::object& lower, const py::object& upper, const py::object& divisions,
+                          const std::string& cell_type) {
+  constexpr Index most = 1 << 20;
+  const std::vector<Index> sides = indices_in(divisions, "box_mesh: divisions", 0, most);
+  if (sides.size() != 3) {
+    throw Refused("box_mesh: divisions are " + std::to_string(sides.size()) +
+                  " numbers; give three, cells a side");
+  }
   BoxMeshDef def;
   def.lower = vector_in(lower, "box_mesh: lower");
   def.upper = vector_in(upper, "box_mesh: upper");
-  def.divisions = divisions;
+  def.divisions = {sides[0], sides[1], sides[2]};
   for (const CellType type : {CellType::tet4, CellType::tet10, CellType::hex8}) {
     if (cell_type != name_of(type)) continue;
     def.cell_type = type;

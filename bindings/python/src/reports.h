@@ -12,9 +12,12 @@ void put_counters(const SolveCounters& work, py::dict& out);
 py::dict dict_of(const StepReport& report);
 py::dict dict_of(const Energies& energies);
 py::list list_of(const std::vector<Gauge>& gauges);
+// Of shape (2, 3).
+py::array vectors(const std::array<Vec3, 2>& two);
 
 void bind_changing(HostedWorldClass& world);
 void bind_stepping(HostedWorldClass& world);
 void bind_reading(HostedWorldClass& world);
+void bind_answers(HostedWorldClass& world);
 
 }  // namespace isochor::python

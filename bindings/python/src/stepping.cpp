@@ -96,6 +96,11 @@ void bind_stepping(HostedWorldClass& world) {
   world.def("step", &step)
       .def("advance", &advance)
       .def("follow", &follow)
+      .def("compile_report",
+           [](HostedWorld& w) {
+             const CompileReport r = w.glance("compile", [](World& v) { return v.compile_report(); });
+             return py::make_tuple(name_of(r.work), r.seconds);
+           })
       .def("cancel", &HostedWorld::cancel)
       .def("set_progress", &HostedWorld::set_progress);
 }

@@ -6,8 +6,8 @@ namespace isochor::python {
 
 namespace {
 
-std::unique_ptr<HostedWorld> make(const std::string& keys) {
-  return std::make_unique<HostedWorld>(options_from(keys));
+std::shared_ptr<HostedWorld> make(const std::string& keys) {
+  return std::make_shared<HostedWorld>(options_from(keys));
 }
 
 BodyId add_body(HostedWorld& world, const std::shared_ptr<Mesh>& mesh, const std::string& keys) {
@@ -49,6 +49,7 @@ void bind_worlds(py::module_& module) {
   bind_changing(world);
   bind_stepping(world);
   bind_reading(world);
+  bind_answers(world);
 }
 
 }  // namespace isochor::python

@@ -1,0 +1,703 @@
+"""Materials. Made by bindings/python/make_stubs.py; edits are lost."""
+
+from typing import Any, Literal, Mapping, Sequence, TypedDict, Union
+
+from numpy.typing import ArrayLike
+
+_Names = Union[str, Sequence[str]]
+_Amount = Union[float, Sequence[tuple[float, float]], ArrayLike]
+
+class Material:
+    keys: dict[str, Any]
+    def __init__(self, keys: dict[str, Any]) -> None: ...
+    @property
+    def law(self) -> str: ...
+    @property
+    def region(self) -> str: ...
+    def with_keys(self, **changes: Any) -> Material: ...
+
+_OgdenTerm = TypedDict("_OgdenTerm", {"mu": float, "alpha": float}, total=False)
+_Fibers = TypedDict("_Fibers", {"direction": ArrayLike, "directions": ArrayLike, "k1": float, "k2": float, "dispersion": float}, total=False)
+_CompressionPenalty = TypedDict("_CompressionPenalty", {"modulus": float, "beta": float}, total=False)
+_CellField = TypedDict("_CellField", {"values": ArrayLike, "file": str}, total=False)
+
+def laws() -> tuple[str, ...]: ...
+def arguments(law: str) -> list[Any]: ...
+
+def neo_hookean(
+    *,
+    young: Union[float, None] = ...,
+    poisson: float = ...,
+    mu: Union[float, None] = ...,
+    lambda_: Union[float, None] = ...,
+    bulk: Union[float, None] = ...,
+    bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law neo_hookean: see docs/materials.
+
+    Parameters
+    ----------
+    young:
+        [Pa] Young's modulus; > 0 (default: by others)
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    mu:
+        [Pa] shear modulus; > 0 (default: by others)
+    lambda_:
+        [Pa] first Lamé parameter, may be "inf" (default: by others)
+    bulk:
+        [Pa] bulk modulus, may be "inf" (default: by others)
+    bulk_choice:
+        what Poisson's ratio means for a neo_hookean law: "consistent", "bulk_modulus" (default: "consistent")
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
+
+def neo_hookean_ogden(
+    *,
+    young: Union[float, None] = ...,
+    poisson: float = ...,
+    mu: Union[float, None] = ...,
+    lambda_: Union[float, None] = ...,
+    bulk: Union[float, None] = ...,
+    bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law neo_hookean_ogden: see docs/materials.
+
+    Parameters
+    ----------
+    young:
+        [Pa] Young's modulus; > 0 (default: by others)
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    mu:
+        [Pa] shear modulus; > 0 (default: by others)
+    lambda_:
+        [Pa] first Lamé parameter, may be "inf" (default: by others)
+    bulk:
+        [Pa] bulk modulus, may be "inf" (default: by others)
+    bulk_choice:
+        what Poisson's ratio means for a neo_hookean law: "consistent", "bulk_modulus" (default: "consistent")
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
+
+def stable_neo_hookean(
+    *,
+    young: Union[float, None] = ...,
+    poisson: float = ...,
+    mu: Union[float, None] = ...,
+    lambda_: Union[float, None] = ...,
+    bulk: Union[float, None] = ...,
+    bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law stable_neo_hookean: see docs/materials.
+
+    Parameters
+    ----------
+    young:
+        [Pa] Young's modulus; > 0 (default: by others)
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    mu:
+        [Pa] shear modulus; > 0 (default: by others)
+    lambda_:
+        [Pa] first Lamé parameter, may be "inf" (default: by others)
+    bulk:
+        [Pa] bulk modulus, may be "inf" (default: by others)
+    bulk_choice:
+        what Poisson's ratio means for a neo_hookean law: "consistent", "bulk_modulus" (default: "consistent")
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
+
+def stable_neo_hookean_barrier(
+    *,
+    young: Union[float, None] = ...,
+    poisson: float = ...,
+    mu: Union[float, None] = ...,
+    lambda_: Union[float, None] = ...,
+    bulk: Union[float, None] = ...,
+    bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law stable_neo_hookean_barrier: see docs/materials.
+
+    Parameters
+    ----------
+    young:
+        [Pa] Young's modulus; > 0 (default: by others)
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    mu:
+        [Pa] shear modulus; > 0 (default: by others)
+    lambda_:
+        [Pa] first Lamé parameter, may be "inf" (default: by others)
+    bulk:
+        [Pa] bulk modulus, may be "inf" (default: by others)
+    bulk_choice:
+        what Poisson's ratio means for a neo_hookean law: "consistent", "bulk_modulus" (default: "consistent")
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
+
+def isochoric_neo_hookean(
+    *,
+    young: Union[float, None] = ...,
+    poisson: float = ...,
+    mu: Union[float, None] = ...,
+    lambda_: Union[float, None] = ...,
+    bulk: Union[float, None] = ...,
+    bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law isochoric_neo_hookean: see docs/materials.
+
+    Parameters
+    ----------
+    young:
+        [Pa] Young's modulus; > 0 (default: by others)
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    mu:
+        [Pa] shear modulus; > 0 (default: by others)
+    lambda_:
+        [Pa] first Lamé parameter, may be "inf" (default: by others)
+    bulk:
+        [Pa] bulk modulus, may be "inf" (default: by others)
+    bulk_choice:
+        what Poisson's ratio means for a neo_hookean law: "consistent", "bulk_modulus" (default: "consistent")
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
+
+def isochoric_extended(
+    *,
+    young: Union[float, None] = ...,
+    poisson: float = ...,
+    mu: Union[float, None] = ...,
+    lambda_: Union[float, None] = ...,
+    bulk: Union[float, None] = ...,
+    bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
+    threshold: float = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law isochoric_extended: see docs/materials.
+
+    Parameters
+    ----------
+    young:
+        [Pa] Young's modulus; > 0 (default: by others)
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    mu:
+        [Pa] shear modulus; > 0 (default: by others)
+    lambda_:
+        [Pa] first Lamé parameter, may be "inf" (default: by others)
+    bulk:
+        [Pa] bulk modulus, may be "inf" (default: by others)
+    bulk_choice:
+        what Poisson's ratio means for a neo_hookean law: "consistent", "bulk_modulus" (default: "consistent")
+    threshold:
+        of isochoric_extended (default: 0.1)
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
+
+def corotated(
+    *,
+    young: Union[float, None] = ...,
+    poisson: float = ...,
+    mu: Union[float, None] = ...,
+    lambda_: Union[float, None] = ...,
+    bulk: Union[float, None] = ...,
+    bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law corotated: see docs/materials.
+
+    Parameters
+    ----------
+    young:
+        [Pa] Young's modulus; > 0 (default: by others)
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    mu:
+        [Pa] shear modulus; > 0 (default: by others)
+    lambda_:
+        [Pa] first Lamé parameter, may be "inf" (default: by others)
+    bulk:
+        [Pa] bulk modulus, may be "inf" (default: by others)
+    bulk_choice:
+        what Poisson's ratio means for a neo_hookean law: "consistent", "bulk_modulus" (default: "consistent")
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
+
+def fixed_corotated(
+    *,
+    young: Union[float, None] = ...,
+    poisson: float = ...,
+    mu: Union[float, None] = ...,
+    lambda_: Union[float, None] = ...,
+    bulk: Union[float, None] = ...,
+    bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law fixed_corotated: see docs/materials.
+
+    Parameters
+    ----------
+    young:
+        [Pa] Young's modulus; > 0 (default: by others)
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    mu:
+        [Pa] shear modulus; > 0 (default: by others)
+    lambda_:
+        [Pa] first Lamé parameter, may be "inf" (default: by others)
+    bulk:
+        [Pa] bulk modulus, may be "inf" (default: by others)
+    bulk_choice:
+        what Poisson's ratio means for a neo_hookean law: "consistent", "bulk_modulus" (default: "consistent")
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
+
+def stvk(
+    *,
+    young: Union[float, None] = ...,
+    poisson: float = ...,
+    mu: Union[float, None] = ...,
+    lambda_: Union[float, None] = ...,
+    bulk: Union[float, None] = ...,
+    bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law stvk: see docs/materials.
+
+    Parameters
+    ----------
+    young:
+        [Pa] Young's modulus; > 0 (default: by others)
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    mu:
+        [Pa] shear modulus; > 0 (default: by others)
+    lambda_:
+        [Pa] first Lamé parameter, may be "inf" (default: by others)
+    bulk:
+        [Pa] bulk modulus, may be "inf" (default: by others)
+    bulk_choice:
+        what Poisson's ratio means for a neo_hookean law: "consistent", "bulk_modulus" (default: "consistent")
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
+
+def stvk_resistant(
+    *,
+    young: Union[float, None] = ...,
+    poisson: float = ...,
+    mu: Union[float, None] = ...,
+    lambda_: Union[float, None] = ...,
+    bulk: Union[float, None] = ...,
+    bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
+    resistance: float = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law stvk_resistant: see docs/materials.
+
+    Parameters
+    ----------
+    young:
+        [Pa] Young's modulus; > 0 (default: by others)
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    mu:
+        [Pa] shear modulus; > 0 (default: by others)
+    lambda_:
+        [Pa] first Lamé parameter, may be "inf" (default: by others)
+    bulk:
+        [Pa] bulk modulus, may be "inf" (default: by others)
+    bulk_choice:
+        what Poisson's ratio means for a neo_hookean law: "consistent", "bulk_modulus" (default: "consistent")
+    resistance:
+        [Pa] of stvk_resistant; >= 0 (default: 0)
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
+
+def linear(
+    *,
+    young: Union[float, None] = ...,
+    poisson: float = ...,
+    mu: Union[float, None] = ...,
+    lambda_: Union[float, None] = ...,
+    bulk: Union[float, None] = ...,
+    bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law linear: see docs/materials.
+
+    Parameters
+    ----------
+    young:
+        [Pa] Young's modulus; > 0 (default: by others)
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    mu:
+        [Pa] shear modulus; > 0 (default: by others)
+    lambda_:
+        [Pa] first Lamé parameter, may be "inf" (default: by others)
+    bulk:
+        [Pa] bulk modulus, may be "inf" (default: by others)
+    bulk_choice:
+        what Poisson's ratio means for a neo_hookean law: "consistent", "bulk_modulus" (default: "consistent")
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
+
+def mooney_rivlin(
+    *,
+    c1: float = ...,
+    c2: float = ...,
+    poisson: float = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law mooney_rivlin: see docs/materials.
+
+    Parameters
+    ----------
+    c1:
+        [Pa] of mooney_rivlin; >= 0 (default: 0)
+    c2:
+        [Pa] of mooney_rivlin; >= 0 (default: 0)
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
+
+def fung(
+    *,
+    mu0: float = ...,
+    mu1: float = ...,
+    gamma: float = ...,
+    poisson: float = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law fung: see docs/materials.
+
+    Parameters
+    ----------
+    mu0:
+        [Pa] of fung; >= 0 (default: 0)
+    mu1:
+        of fung; >= 0 (default: 0)
+    gamma:
+        [Pa] of fung; >= 0 (default: 0)
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
+
+def arruda_boyce(
+    *,
+    mu: Union[float, None] = ...,
+    beta1: float = ...,
+    beta2: float = ...,
+    poisson: float = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law arruda_boyce: see docs/materials.
+
+    Parameters
+    ----------
+    mu:
+        [Pa] shear modulus; > 0 (default: by others)
+    beta1:
+        of arruda_boyce; >= 0 (default: 0)
+    beta2:
+        of arruda_boyce; >= 0 (default: 0)
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
+
+def ogden(
+    *,
+    terms: Union[Sequence["_OgdenTerm"], None] = ...,
+    poisson: float = ...,
+    density: float = ...,
+    region: Union[str, None] = ...,
+    fibers: Union[Sequence["_Fibers"], None] = ...,
+    compression_penalty: Union["_CompressionPenalty", None] = ...,
+    stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
+    poisson_field: Union[Union["_CellField", ArrayLike], None] = ...,
+) -> Material:
+    """The law ogden: see docs/materials.
+
+    Parameters
+    ----------
+    terms:
+        of ogden
+    poisson:
+        Poisson's ratio; 0.5: incompressible; <= 0.5 (default: 0)
+    density:
+        [kg/m^3] see the page of the effect; > 0 (default: 1000)
+    region:
+        of the mesh (default: every region not named elsewhere)
+    fibers:
+        families of fibers
+    compression_penalty:
+        against single crushed elements
+    stiffness_field:
+        factors on the stiffness
+    poisson_field:
+        Poisson's ratios, in place of poisson
+
+    Values are looked at when the body is added. Raises isochor.Error for keys that there are not.
+    """
