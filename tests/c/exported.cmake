@@ -1,4 +1,5 @@
 # The library shows the calls of its header, all of them, and nothing else.
+cmake_policy(VERSION 3.25)
 execute_process(COMMAND ${NM} -D --defined-only ${LIBRARY} OUTPUT_VARIABLE text RESULT_VARIABLE status)
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "nm ${LIBRARY} failed")

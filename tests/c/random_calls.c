@@ -25,13 +25,10 @@ static double number(void) {
 
 static iso_status one_call(iso_world* world, iso_world* other, iso_body* bodies, iso_effect* effects) {
   static const char* kinds[] = {"volume", "cavity", "dirichlet", "nonsense", "damping", "", NULL};
-  static const char* keys[] = {"{}",
-                               "{\"surfaces\": \"x1\"}",
-                               "{\"name\": \"d\", \"where\": {\"surfaces\": \"x1\"}}",
-                               "[1, 2",
-                               "{\"amount\": 1e999}",
-                               "",
-                               NULL};
+  static const char* keys[] = {
+      "{}",    "{\"surfaces\": \"x1\"}", "{\"name\": \"d\", \"where\": {\"surfaces\": \"x1\"}}",
+      "[1, 2", "{\"amount\": 1e999}",    "",
+      NULL};
   double v[3], three[3] = {0, 0, 0};
   const double* view = NULL;
   const void* bytes = NULL;
@@ -51,30 +48,55 @@ static iso_status one_call(iso_world* world, iso_world* other, iso_body* bodies,
   report.size = dice(4) == 0 ? dice(64) : sizeof report;
   measures.size = dice(4) == 0 ? dice(16) : sizeof measures;
   switch (dice(24)) {
-    case 0: return iso_add(world, kinds[dice(7)], keys[dice(7)], dice(5) == 0 ? NULL : &effects[dice(3)]);
-    case 1: return iso_step(world, number(), &report);
-    case 2: return iso_advance(world, dice(2) == 0 ? 0.01 : number(), &report);
-    case 3: return iso_step_within(world, 0.01, (int32_t)dice(4) - 1, number(), &report);
-    case 4: return iso_set_amount(world, effect, number());
-    case 5: return iso_set_gravity(world, dice(4) == 0 ? NULL : v);
-    case 6: return iso_add_force(world, body, (int32_t)dice(40) - 5, v);
-    case 7: return iso_add_force_at(world, body, three, v);
-    case 8: return iso_set_forces(world, body, v, dice(3), dice(3) * 8);
-    case 9: return iso_remove_effect(world, effect);
-    case 10: return iso_remove_body(world, body);
-    case 11: return iso_set_density(world, body, dice(2) == 0 ? NULL : "nowhere", number());
-    case 12: return iso_set_material(world, body, NULL, dice(2) == 0 ? "{\"young\": 2e4, \"poisson\": 0.4}" : keys[dice(7)]);
-    case 13: return iso_positions(world, body, dice(6) == 0 ? NULL : &view, &count);
-    case 14: return iso_gauges(world, &gauges, dice(6) == 0 ? NULL : &count);
-    case 15: return iso_contacts(world, &contacts, &count);
-    case 16: return iso_measure(world, body, dice(3) == 0 ? "x" : NULL, &measures);
-    case 17: return iso_save(world, &bytes, &count);
-    case 18: return iso_load(world, v, sizeof v);
-    case 19: return iso_reset(world);
-    case 20: return iso_clear_forces(world);
-    case 21: return iso_compile(world, NULL);
-    case 22: return iso_follow(world, number(), NULL);
-    default: return iso_state_hash(world, dice(6) == 0 ? NULL : (uint64_t*)&hash);
+    case 0:
+      return iso_add(world, kinds[dice(7)], keys[dice(7)], dice(5) == 0 ? NULL : &effects[dice(3)]);
+    case 1:
+      return iso_step(world, number(), &report);
+    case 2:
+      return iso_advance(world, dice(2) == 0 ? 0.01 : number(), &report);
+    case 3:
+      return iso_step_within(world, 0.01, (int32_t)dice(4) - 1, number(), &report);
+    case 4:
+      return iso_set_amount(world, effect, number());
+    case 5:
+      return iso_set_gravity(world, dice(4) == 0 ? NULL : v);
+    case 6:
+      return iso_add_force(world, body, (int32_t)dice(40) - 5, v);
+    case 7:
+      return iso_add_force_at(world, body, three, v);
+    case 8:
+      return iso_set_forces(world, body, v, dice(3), dice(3) * 8);
+    case 9:
+      return iso_remove_effect(world, effect);
+    case 10:
+      return iso_remove_body(world, body);
+    case 11:
+      return iso_set_density(world, body, dice(2) == 0 ? NULL : "nowhere", number());
+    case 12:
+      return iso_set_material(world, body, NULL,
+                              dice(2) == 0 ? "{\"young\": 2e4, \"poisson\": 0.4}" : keys[dice(7)]);
+    case 13:
+      return iso_positions(world, body, dice(6) == 0 ? NULL : &view, &count);
+    case 14:
+      return iso_gauges(world, &gauges, dice(6) == 0 ? NULL : &count);
+    case 15:
+      return iso_contacts(world, &contacts, &count);
+    case 16:
+      return iso_measure(world, body, dice(3) == 0 ? "x" : NULL, &measures);
+    case 17:
+      return iso_save(world, &bytes, &count);
+    case 18:
+      return iso_load(world, v, sizeof v);
+    case 19:
+      return iso_reset(world);
+    case 20:
+      return iso_clear_forces(world);
+    case 21:
+      return iso_compile(world, NULL);
+    case 22:
+      return iso_follow(world, number(), NULL);
+    default:
+      return iso_state_hash(world, dice(6) == 0 ? NULL : (uint64_t*)&hash);
   }
 }
 
@@ -100,12 +122,16 @@ static void sequence(uint32_t seed) {
   options.size = sizeof options;
   options.threads = 1;
   report.size = sizeof report;
-  if (iso_mesh_box(lower, upper, divisions, ISO_TET4, &mesh, message, sizeof message) != ISO_OK) fail(message, seed);
+  if (iso_mesh_box(lower, upper, divisions, ISO_TET4, &mesh, message, sizeof message) != ISO_OK)
+    fail(message, seed);
   if (iso_world_create(&options, &world, message, sizeof message) != ISO_OK) fail(message, seed);
   if (iso_world_create(&options, &other, message, sizeof message) != ISO_OK) fail(message, seed);
-  if (iso_add_soft_body(other, "a", mesh, 1e4, 0.4, 1000, &bodies[3]) != ISO_OK) fail(iso_last_error(other), seed);
-  if (iso_add_soft_body(world, "a", mesh, 1e4, 0.4, 1000, &bodies[0]) != ISO_OK) fail(iso_last_error(world), seed);
-  if (iso_add_support(world, "hold", bodies[0], held, 1, &effects[0]) != ISO_OK) fail(iso_last_error(world), seed);
+  if (iso_add_soft_body(other, "a", mesh, 1e4, 0.4, 1000, &bodies[3]) != ISO_OK)
+    fail(iso_last_error(other), seed);
+  if (iso_add_soft_body(world, "a", mesh, 1e4, 0.4, 1000, &bodies[0]) != ISO_OK)
+    fail(iso_last_error(world), seed);
+  if (iso_add_support(world, "hold", bodies[0], held, 1, &effects[0]) != ISO_OK)
+    fail(iso_last_error(world), seed);
   bodies[1] = bodies[0];
   bodies[1].generation += 7; /* one that was never given */
   effects[3].number = 99;
@@ -118,7 +144,8 @@ static void sequence(uint32_t seed) {
   /* Whatever there was, a new world works, and this one ends. */
   if (iso_world_free(other) != ISO_OK || iso_world_free(world) != ISO_OK) fail("not freed", seed);
   if (iso_world_create(&options, &world, message, sizeof message) != ISO_OK) fail(message, seed);
-  if (iso_add_soft_body(world, "a", mesh, 1e4, 0.4, 1000, &fresh) != ISO_OK) fail(iso_last_error(world), seed);
+  if (iso_add_soft_body(world, "a", mesh, 1e4, 0.4, 1000, &fresh) != ISO_OK)
+    fail(iso_last_error(world), seed);
   if (iso_add_support(world, "hold", fresh, held, 1, &hold) != ISO_OK) fail(iso_last_error(world), seed);
   if (iso_advance(world, 0.01, &report) != ISO_OK) fail(report.reason, seed);
   if (iso_world_free(world) != ISO_OK) fail("not freed", seed);
@@ -126,7 +153,8 @@ static void sequence(uint32_t seed) {
 }
 
 int main(int argc, char** argv) {
-  const uint32_t first = argc > 1 ? (uint32_t)atoi(argv[1]) : 1, count = argc > 2 ? (uint32_t)atoi(argv[2]) : 300;
+  const uint32_t first = argc > 1 ? (uint32_t)atoi(argv[1]) : 1,
+                 count = argc > 2 ? (uint32_t)atoi(argv[2]) : 300;
   uint32_t k;
   if (iso_world_create(NULL, NULL, NULL, 0) == ISO_OK) fail("a world without a place for it", 0);
   if (iso_last_error(NULL) == NULL) fail("no sentence for no world", 0);

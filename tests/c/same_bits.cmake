@@ -1,4 +1,5 @@
 # The example in C and the one through Python's foreign functions end with one state.
+cmake_policy(VERSION 3.25)
 execute_process(COMMAND ${PROGRAM} ${MESH} OUTPUT_VARIABLE a ERROR_VARIABLE problem RESULT_VARIABLE status)
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "${PROGRAM}: ${problem}")

@@ -79,6 +79,8 @@ TEST_CASE("effects by keys name bodies by the ids of their world") {
   Hosted one("{}"), other("{}");
   one.body(kBody);
   other.body(kBody);
+  one.effect("volume", "{}");
+  other.effect("volume", "{}");
   const EffectPtr support =
       need(effect_from_keys("dirichlet", R"({"where": {"body": "block", "surfaces": "x0"}})", one.context));
   (void)need(other.world.add(support));
@@ -93,8 +95,9 @@ TEST_CASE("what is wrong with the keys of a part is said with its place") {
   const auto effect = [&](const char* kind, const char* keys) {
     return why(effect_from_keys(kind, keys, hosted.context));
   };
-  CHECK_THAT(effect("cavity", R"({"name": "c", "amount": 1})"), Contains("cavity: \"surfaces\" is missing"));
-  CHECK_THAT(effect("cavity", R"({"name": "c", "surfaces": "x0", "amont": 1})"),
+  CHECK_THAT(effect("cavity", R"({"name": "c", "surfaces": "x0"})"),
+             Contains("cavity: \"amount\" is missing"));
+  CHECK_THAT(effect("cavity", R"({"name": "c", "surfaces": "x0", "amount": 1, "amont": 1})"),
              Contains("cavity.amont: unknown key") && Contains("\"amount\""));
   CHECK_THAT(effect("dirichlet", R"({"where": {"body": "blok"}})"),
              Contains("dirichlet.where.body") && Contains("\"block\""));
@@ -136,6 +139,7 @@ TEST_CASE("plain numbers for curves ramp in statics and hold in dynamics") {
     Hosted one(type == AnalysisType::statics ? R"({"type": "static"})" : "{}");
     one.context.analysis = type;
     one.body(kBody);
+    one.effect("volume", "{}");
     const EffectId wall = one.effect("dirichlet", R"({"name": "wall", "where": {"surfaces": "x0"}})");
     one.effect("traction", traction);
     REQUIRE(one.world.step(0.25).status == StepStatus::converged);
