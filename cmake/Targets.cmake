@@ -21,8 +21,10 @@ function(isochor_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# What the public headers say, as a number (isochor/abi.h).
-set(ISOCHOR_GENERATED_INCLUDE ${PROJECT_BINARY_DIR}/include)
+# What the public headers say, as a number (isochor/abi.h). Builds of the same sources may share the folder of it, so that
+# a compiler cache sees the same commands.
+set(ISOCHOR_GENERATED_INCLUDE ${PROJECT_BINARY_DIR}/include CACHE PATH "Folder of isochor/abi.h")
+mark_as_advanced(ISOCHOR_GENERATED_INCLUDE)
 file(GLOB_RECURSE _public_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/isochor/*.h)
 add_custom_command(OUTPUT ${PROJECT_BINARY_DIR}/abi.stamp
   BYPRODUCTS ${ISOCHOR_GENERATED_INCLUDE}/isochor/abi.h

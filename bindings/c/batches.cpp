@@ -19,10 +19,19 @@ void check_count(const iso_batch& batch, std::size_t count, const char* what) {
 void work(iso_batch& batch, iso_report* reports, std::size_t count, const auto& step) {
   if (reports != nullptr) {
     check_count(batch, count, "reports");
-    for (std::size_t i = 0; i < count; ++i) (void)sized(&reports[i], "reports");
+    check_size(reports, "reports");
+    for (std::size_t i = 1; i < count; ++i) {
+      if (nth(reports, i)->size != reports->size)
+        refuse("reports[" + std::to_string(i) + "].size = " + std::to_string(nth(reports, i)->size) +
+               " and that of the first is " + std::to_string(reports->size) + "; they must be the same");
+    }
   }
   batch.reports = step(batch.batch);
-  for (std::size_t i = 0; reports != nullptr && i < count; ++i) show(batch.reports[i], &reports[i]);
+  for (std::size_t i = 0; reports != nullptr && i < count; ++i) {
+    Filled<iso_report> told(nth(reports, i), "reports");
+    show(batch.reports[i], *told);
+    told.give();
+  }
   for (std::size_t i = 0; i < batch.reports.size(); ++i) {
     const StepReport& report = batch.reports[i];
     if (report.status != StepStatus::converged)

@@ -2,12 +2,15 @@
 // out.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -209,15 +212,64 @@ T& given(T* pointer, const char* name) {
   if (pointer == nullptr) refuse(std::string(name) + " is a null pointer; pass where it is");
   return *pointer;
 }
+// Structs of callers that were compiled with another version of the header: a struct grows at its end only,
+// and a member that is zero has its default. A smaller one, down to that of the first version, is filled up
+// with zeros; what a larger one has beyond ours must be zero.
 template <class T>
-T& sized(T* pointer, const char* name) {
-  T& it = given(pointer, name);
-  if (it.size != sizeof(T)) {
-    refuse(std::string(name) + "->size = " + std::to_string(it.size) +
-           "; set it to sizeof of the struct, which is " + std::to_string(sizeof(T)) +
-           " in this version of the library");
+inline constexpr std::size_t kFirstSize = sizeof(T);  // specialized for a struct that has grown since
+inline constexpr std::size_t kMostBeyond = 512;       // larger is a size that nobody set
+
+template <class T>
+void check_size(const T* pointer, const char* name) {
+  const std::size_t size = given(pointer, name).size;
+  if (size >= kFirstSize<T> && size <= sizeof(T) + kMostBeyond) return;
+  refuse(std::string(name) + "->size = " + std::to_string(size) +
+         "; set it to sizeof of the struct, which is " + std::to_string(sizeof(T)) +
+         " in this version of the library");
+}
+
+// A struct that is read.
+template <class T>
+T taken(const T* pointer, const char* name) {
+  check_size(pointer, name);
+  T out{};
+  const auto* bytes = reinterpret_cast<const unsigned char*>(pointer);
+  const std::size_t size = pointer->size, known = std::min(size, sizeof(T));
+  std::memcpy(&out, bytes, known);
+  out.size = sizeof(T);
+  if (std::any_of(bytes + known, bytes + size, [](unsigned char byte) { return byte != 0; }))
+    refuse(std::string(name) +
+           " has members set that this version of the library does not know; leave them zero "
+           "or take a newer one");
+  return out;
+}
+
+// A struct that is filled: here first, and by give() where the caller has it.
+template <class T>
+class Filled {
+ public:
+  Filled(T* pointer, const char* name) : out_(pointer) {
+    check_size(pointer, name);
+    value_.size = pointer->size;
   }
-  return it;
+  T* operator->() { return &value_; }
+  T& operator*() { return value_; }
+  void give() {
+    const std::size_t size = out_->size, known = std::min(size, sizeof(T));
+    value_.size = size;
+    std::memcpy(out_, &value_, known);
+    std::memset(reinterpret_cast<unsigned char*>(out_) + known, 0, size - known);
+  }
+
+ private:
+  T* out_;
+  T value_{};
+};
+// The i-th of an array of them, whose step is the size that its first says.
+template <class T>
+T* nth(T* first, std::size_t i) {
+  using Byte = std::conditional_t<std::is_const_v<T>, const unsigned char, unsigned char>;
+  return reinterpret_cast<T*>(reinterpret_cast<Byte*>(first) + i * first->size);
 }
 inline std::string text(const char* pointer, const char* name) {
   return &given(pointer, name);

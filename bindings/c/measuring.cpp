@@ -103,16 +103,18 @@ extern "C" iso_status iso_reaction(iso_world* world, iso_effect effect, double f
 
 extern "C" iso_status iso_measure(iso_world* world, iso_body body, const char* region, iso_measures* out) {
   return ask(world, "iso_measure", [&](World& w) {
-    (void)sized(out, "out");
+    Filled<iso_measures> told(out, "out");
     const BodyMeasures measures = w.measures(body_of(w, body));
     if (region == nullptr) {
-      put_body(measures, *out);
+      put_body(measures, *told);
+      told.give();
       return;
     }
     std::string known;
     for (const VolumeMeasures& part : measures.regions) {
       if (part.name == region) {
-        put_volume(part, *out);
+        put_volume(part, *told);
+        told.give();
         return;
       }
       known += (known.empty() ? "\"" : ", \"") + part.name + "\"";
@@ -123,9 +125,10 @@ extern "C" iso_status iso_measure(iso_world* world, iso_body body, const char* r
 
 extern "C" iso_status iso_energy(iso_world* world, iso_energies* out) {
   return ask(world, "iso_energy", [&](World& w) {
-    (void)sized(out, "out");
+    Filled<iso_energies> told(out, "out");
     const Energies e = w.energies();
-    *out = {sizeof *out, e.kinetic, e.elastic, e.gravity, e.loads, e.pressures};
+    *told = {told->size, e.kinetic, e.elastic, e.gravity, e.loads, e.pressures};
+    told.give();
   });
 }
 
@@ -139,21 +142,22 @@ extern "C" iso_status iso_momentum(iso_world* world, double linear[3], double an
 
 extern "C" iso_status iso_fields(iso_world* world, iso_body body, iso_body_fields* out) {
   return ask(world, "iso_fields", [&](World& w) {
-    (void)sized(out, "out");
+    Filled<iso_body_fields> told(out, "out");
     BodyFields& f = world->answers.fields;
     f = w.fields(body_of(w, body));
-    *out = {sizeof *out,
-            f.node_pressure.size(),
-            f.cell_J.size(),
-            data(f.node_pressure),
-            data(f.node_stress),
-            data(f.cell_J),
-            data(f.cell_pressure),
-            data(f.cell_von_mises),
-            data(f.cell_stress),
-            data(f.cell_max_stretch),
-            data(f.node_contact_pressure),
-            data(f.node_friction)};
+    *told = {told->size,
+             f.node_pressure.size(),
+             f.cell_J.size(),
+             data(f.node_pressure),
+             data(f.node_stress),
+             data(f.cell_J),
+             data(f.cell_pressure),
+             data(f.cell_von_mises),
+             data(f.cell_stress),
+             data(f.cell_max_stretch),
+             data(f.node_contact_pressure),
+             data(f.node_friction)};
+    told.give();
   });
 }
 
@@ -199,14 +203,15 @@ extern "C" iso_status iso_contact_pairs(iso_world* world, const iso_contact_pair
 
 extern "C" iso_status iso_turn(iso_world* world, const char* where, iso_orientation* out) {
   return ask(world, "iso_turn", [&](World& w) {
-    (void)sized(out, "out");
+    Filled<iso_orientation> told(out, "out");
     const Selection selection = need(selection_from_keys(text(where, "where"), world->keys.context(w)));
     const Orientation o = need(w.orientation(selection));
-    out->angle = o.angle;
-    put(o.axis, out->axis);
-    put(o.displacement, out->displacement);
-    put(o.normal, out->normal);
-    out->misfit = o.misfit;
+    told->angle = o.angle;
+    put(o.axis, told->axis);
+    put(o.displacement, told->displacement);
+    put(o.normal, told->normal);
+    told->misfit = o.misfit;
+    told.give();
   });
 }
 
@@ -214,9 +219,9 @@ extern "C" iso_status iso_derivatives(iso_world* world, const iso_input* inputs,
                                       const iso_response** out) {
   return ask(world, "iso_derivatives", [&](World& w) {
     (void)given(out, "out");
-    if (count > 0) (void)given(inputs, "inputs");
+    if (count > 0) check_size(inputs, "inputs");
     std::vector<ResponseInput> asked;
-    for (std::size_t i = 0; i < count; ++i) asked.push_back(input_from(w, sized(&inputs[i], "inputs")));
+    for (std::size_t i = 0; i < count; ++i) asked.push_back(input_from(w, taken(nth(inputs, i), "inputs")));
     std::vector<Response> made = need(w.derivatives(asked));
     Answers& a = world->answers;
     a.kept_responses.clear();
@@ -232,10 +237,11 @@ extern "C" iso_status iso_derivatives(iso_world* world, const iso_input* inputs,
 
 extern "C" iso_status iso_size(iso_world* world, iso_world_size* out) {
   return ask(world, "iso_size", [&](World& w) {
-    (void)sized(out, "out");
+    Filled<iso_world_size> told(out, "out");
     const WorldSize s = w.size();
-    *out = {sizeof *out,       s.nodes,           s.displacement_unknowns, s.multipliers, s.matrix_size,
-            s.matrix_nonzeros, s.factor_nonzeros, s.engine_bytes,          s.table_bytes};
+    *told = {told->size,        s.nodes,           s.displacement_unknowns, s.multipliers, s.matrix_size,
+             s.matrix_nonzeros, s.factor_nonzeros, s.engine_bytes,          s.table_bytes};
+    told.give();
   });
 }
 

@@ -105,7 +105,7 @@ void MeshView::show(const Mesh& from) {
 }
 
 Mesh mesh_from(const iso_mesh* pointer) {
-  const iso_mesh& m = sized(pointer, "mesh");
+  const iso_mesh m = taken(pointer, "mesh");
   if (m.cell_type < ISO_TET4 || m.cell_type > ISO_HEX8)
     refuse("mesh->cell_type = " + std::to_string(m.cell_type) +
            "; it must be ISO_TET4, ISO_TET10 or ISO_HEX8");

@@ -135,12 +135,14 @@ extern "C" iso_status iso_keys(char* out, size_t size, size_t* needed) {
 
 extern "C" iso_status iso_compile(iso_world* world, iso_compile_report* out) {
   return enter(world, "iso_compile", [&] {
-    if (out != nullptr) (void)sized(out, "out");
+    if (out != nullptr) check_size(out, "out");
     need(world->world->compile());
     if (out == nullptr) return;
+    Filled<iso_compile_report> told(out, "out");
     const CompileReport& report = world->world->compile_report();
-    out->work = static_cast<std::int32_t>(report.work);
-    out->seconds = report.seconds;
+    told->work = static_cast<std::int32_t>(report.work);
+    told->seconds = report.seconds;
+    told.give();
   });
 }
 

@@ -3,29 +3,27 @@
 
 namespace isochor::c {
 
-void show(const StepReport& from, iso_report* out) {
-  if (out == nullptr) return;
-  out->status = status_of(from.status);
-  out->reason = from.reason.c_str();
-  out->warning = from.warning.c_str();
-  out->time = from.time;
-  out->iterations = from.iterations;
-  out->corrections = from.corrections;
-  out->factorizations = from.factorizations;
-  out->substeps = from.substeps;
-  out->rejected_substeps = from.rejected_substeps;
-  out->rescues = from.rescues;
-  out->unstable_directions = from.unstable_directions;
-  out->min_J = from.min_J;
-  out->inverted_cells = from.inverted_cells;
-  out->force_residual = from.force_residual;
-  out->row_residual = from.row_residual;
-  out->time_error = from.time_error;
-  out->seconds = from.seconds.total;
-  out->factor_seconds = from.seconds.factor;
-  out->solve_seconds = from.seconds.solve;
-  out->compiled = {sizeof out->compiled, static_cast<std::int32_t>(from.compiled.work),
-                   from.compiled.seconds};
+void show(const StepReport& from, iso_report& out) {
+  out.status = status_of(from.status);
+  out.reason = from.reason.c_str();
+  out.warning = from.warning.c_str();
+  out.time = from.time;
+  out.iterations = from.iterations;
+  out.corrections = from.corrections;
+  out.factorizations = from.factorizations;
+  out.substeps = from.substeps;
+  out.rejected_substeps = from.rejected_substeps;
+  out.rescues = from.rescues;
+  out.unstable_directions = from.unstable_directions;
+  out.min_J = from.min_J;
+  out.inverted_cells = from.inverted_cells;
+  out.force_residual = from.force_residual;
+  out.row_residual = from.row_residual;
+  out.time_error = from.time_error;
+  out.seconds = from.seconds.total;
+  out.factor_seconds = from.seconds.factor;
+  out.solve_seconds = from.seconds.solve;
+  out.compiled = {sizeof out.compiled, static_cast<std::int32_t>(from.compiled.work), from.compiled.seconds};
 }
 
 }  // namespace isochor::c
@@ -37,10 +35,14 @@ namespace {
 
 iso_status run(iso_world* world, const char* call, iso_report* report, const auto& step) {
   return enter(world, call, [&] {
-    if (report != nullptr) (void)sized(report, "report");
+    if (report != nullptr) check_size(report, "report");
     StepReport& kept = world->answers.report;
     kept = step(*world->world);
-    show(kept, report);
+    if (report != nullptr) {
+      Filled<iso_report> told(report, "report");
+      show(kept, *told);
+      told.give();
+    }
     if (kept.status != StepStatus::converged) throw Refused{status_of(kept.status), kept.reason};
   });
 }
@@ -63,7 +65,7 @@ extern "C" iso_status iso_set_gravity(iso_world* world, const double gravity[3])
 
 extern "C" iso_status iso_set_pose(iso_world* world, iso_effect effect, const iso_pose* pose) {
   return enter(world, "iso_set_pose", [&] {
-    const iso_pose& p = sized(pose, "pose");
+    const iso_pose p = taken(pose, "pose");
     Pose to;
     to.position = vector(p.position, "pose->position");
     to.rotation = {p.rotation[0], p.rotation[1], p.rotation[2], p.rotation[3]};

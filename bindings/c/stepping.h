@@ -5,7 +5,7 @@
 
 namespace isochor::c {
 
-// Texts stay those of `from`. Null: nobody asks.
-void show(const StepReport& from, iso_report* out);
+// Texts stay those of `from`.
+void show(const StepReport& from, iso_report& out);
 
 }  // namespace isochor::c

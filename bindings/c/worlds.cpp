@@ -79,7 +79,7 @@ extern "C" iso_status iso_world_create(const iso_options* options, iso_world** o
     iso_options defaults{};
     defaults.size = sizeof defaults;
     Keyring keys;
-    WorldOptions made = options_of(options == nullptr ? defaults : sized(options, "options"), keys);
+    WorldOptions made = options_of(options == nullptr ? defaults : taken(options, "options"), keys);
     *out = new iso_world(need(World::create(std::move(made))), std::move(keys));
   });
 }

@@ -85,8 +85,12 @@ void describe_body(const BodyData& body, std::vector<ScenePart>& parts) {
   const Mesh& m = body.mesh;
   parts.push_back({"the element" + who,
                    Fingerprint().add(body.element, body.guard_threshold, body.guard_stiffness).value()});
+  // No list of regions means region 0, as a list of zeros does.
+  const bool one_region =
+      std::all_of(m.cell_region.begin(), m.cell_region.end(), [](Index r) { return r == 0; });
+  const std::vector<Index> cell_region = one_region ? std::vector<Index>() : m.cell_region;
   parts.push_back({"the mesh" + who, Fingerprint()
-                                         .add(m.cell_type, m.nodes, m.cells, m.cell_region, m.regions,
+                                         .add(m.cell_type, m.nodes, m.cells, cell_region, m.regions,
                                               m.surfaces, m.node_sets, m.fields)
                                          .value()});
   for (const RegionData& region : body.regions) {

@@ -60,8 +60,12 @@ const Mesh& World::mesh(BodyId body) const {
 }
 const std::string& World::body_name(BodyId body) const {
   static const std::string none;
-  const BodyData* b = impl_->find_body(body, "body_name");
-  return b ? b->name : none;
+  // Like effect_name(), of what was said last: a name is no reason to compile.
+  if (auto known = check(body); !known) {
+    if (impl_->options.log) impl_->options.log("body_name: " + known.error());
+    return none;
+  }
+  return impl_->latest().builder.body(body).name;
 }
 Index World::body_count() const {
   return impl_->latest().builder.body_slots().taken();

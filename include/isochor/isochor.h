@@ -9,7 +9,10 @@
  *   `message` of `message_size` bytes, which they end with a zero and cut where it is too small; it may be
  *   null. A call that is refused changes nothing and leaves its outputs as they were.
  * - Structs that the caller makes or receives begin with `size`, which the caller sets to sizeof of the
- * struct. Members that are zero have their defaults.
+ *   struct. Members that are zero have their defaults. Versions add members at the end of a struct alone: one
+ *   of an earlier version is taken, and one of a later version where the members that this library does not
+ *   know are zero; those of a struct that is filled become zero. Structs without `size` and those inside
+ * others stay as they are.
  * - Texts are UTF-8 and end with a zero. What is passed in is only read during the call, callbacks and their
  *   `user` pointers apart. What is passed out as a pointer to const belongs to the world, batch or scene and
  *   stays good as long as is said beside it.

@@ -1,5 +1,6 @@
 """Worlds, descriptions and exceptions can be pickled."""
 
+import concurrent.futures
 import copy
 import multiprocessing
 import pickle
@@ -88,7 +89,7 @@ def step_elsewhere(world):
 def test_worlds_travel_to_other_processes():
     made = Block()
     made.world.advance(0.01)
-    with multiprocessing.get_context("spawn").Pool(1) as pool:
-        there = pool.apply(step_elsewhere, (made.world,))
+    with concurrent.futures.ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
+        there = pool.submit(step_elsewhere, made.world).result()
     made.world.advance(0.01)
     assert there == made.world.state_hash

@@ -211,3 +211,13 @@ def test_contacts_hold_the_weight():
     assert np.allclose(points.normals, (0, 0, 1)) and np.allclose(points.gaps, 0, atol=1e-9)
     assert pair.force[2] == pytest.approx(weight, rel=1e-6) and pair.normal == pytest.approx(weight, rel=1e-6)
     assert np.allclose(points.positions, body.positions[points.nodes])
+
+
+def test_warnings_reach_the_log(caplog):
+    world = iso.World(threads=1)
+    mesh = iso.box_mesh((0, 0, 0), (5000, 5000, 5000))
+    with caplog.at_level("WARNING", "isochor"):
+        world.add_body(mesh, iso.neo_hookean(young=1e5, poisson=0.3))
+        world.compile()
+    said = [record.message for record in caplog.records if "millimeters" in record.message]
+    assert len(said) == 1 and world.warnings == said

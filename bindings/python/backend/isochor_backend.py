@@ -86,6 +86,9 @@ class _Wheel:
     def add(self, name, data):
         digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
         self.record.append(f"{name},sha256={digest},{len(data)}")
+        self._write(name, data)
+
+    def _write(self, name, data):
         entry = zipfile.ZipInfo(name, (2020, 1, 1, 0, 0, 0))  # the same bytes from the same files
         entry.external_attr = 0o644 << 16
         entry.compress_type = zipfile.ZIP_DEFLATED
@@ -98,7 +101,7 @@ class _Wheel:
         wheel = f"Wheel-Version: 1.0\nGenerator: isochor\nRoot-Is-Purelib: false\nTag: {_tag()}\n"
         self.add(f"{info}/WHEEL", wheel.encode())
         self.record.append(f"{info}/RECORD,,")
-        self.zip.writestr(f"{info}/RECORD", "\n".join(self.record) + "\n")
+        self._write(f"{info}/RECORD", ("\n".join(self.record) + "\n").encode())
         self.zip.close()
         return self.name
 

@@ -717,6 +717,9 @@ class World:
             self._effects.append(effect)
         if state["state"] is not None:
             self._ready().load(state["state"])
+            self._gravity = state["gravity"]  # the state has it
+        elif not np.array_equal(self._gravity, state["gravity"]):
+            self.gravity = state["gravity"]
 
     def __repr__(self) -> str:
         return f"<isochor.World: {len(self._bodies)} bodies, {len(self._effects)} effects, t = {self.time:g}>"

@@ -89,8 +89,9 @@ py::list derivatives(HostedWorld& world, const py::list& given) {
 }
 
 py::dict orientation(HostedWorld& world, const std::string& keys) {
-  const Orientation o = need(world.work(
-      "orientation", [&](World& w) { return w.orientation(selection_from(keys, world.names())); }));
+  const Orientation o = need(world.work("orientation", [&](World& w) {
+    return w.orientation(need(selection_from_keys(keys, world.meaning().in(w))));
+  }));
   py::dict out;
   out["angle"] = o.angle;
   out["axis"] = array_of(o.axis);

@@ -13,7 +13,7 @@ using BatchPtr = std::shared_ptr<HostedBatch>;
 BatchPtr make(const std::shared_ptr<HostedWorld>& world, Index count, int threads) {
   Result<WorldBatch> made =
       world->work("WorldBatch", [&](World& w) { return WorldBatch::create(w, count, threads); });
-  return std::make_shared<HostedBatch>(need(std::move(made)), world->names(), world->log());
+  return std::make_shared<HostedBatch>(need(std::move(made)), world->meaning(), world->log());
 }
 
 py::list list_of(const std::vector<StepReport>& reports) {

@@ -36,8 +36,10 @@ void add_force_at(HostedWorld& world, BodyId body, const py::object& point, cons
          [&](World& w, const Vec3& f) { return w.add_force_at(body, at, f); });
 }
 void set_gravity(HostedWorld& world, const py::object& gravity) {
-  change(world, "set_gravity", vector_in(gravity, "set_gravity: gravity"),
-         [](World& w, const Vec3& g) { return w.set_gravity(g); });
+  const Vec3 given = vector_in(gravity, "set_gravity: gravity");
+  change(world, "set_gravity", given, [](World& w, const Vec3& g) { return w.set_gravity(g); });
+  world.meaning().gravity = given;
+  world.meaning().gravity_curve = Curve::constant(1);
 }
 void set_amount(HostedWorld& world, EffectId effect, double amount) {
   change(world, "set_amount", amount, [&](World& w, double a) { return w.set_amount(effect, a); });
@@ -55,8 +57,9 @@ void set_pose(HostedWorld& world, EffectId effect, const py::object& position, c
 }
 
 void set_material(HostedWorld& world, BodyId body, const std::string& region, const std::string& keys) {
-  need(world.work("set_material",
-                  [&](World& w) { return w.set_material(body, region, material_from(keys)); }));
+  need(world.work("set_material", [&](World& w) {
+    return w.set_material(body, region, need(material_from_keys(keys, "")).material);
+  }));
 }
 void set_density(HostedWorld& world, BodyId body, const std::string& region, double density) {
   change(world, "set_density", density, [&](World& w, double d) { return w.set_density(body, region, d); });

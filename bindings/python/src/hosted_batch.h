@@ -8,8 +8,8 @@ namespace isochor::python {
 
 class HostedBatch : public std::enable_shared_from_this<HostedBatch> {
  public:
-  HostedBatch(WorldBatch batch, PartNames names, LogLines log)
-      : batch_(std::move(batch)), names_(std::move(names)) {
+  HostedBatch(WorldBatch batch, KeyMeaning meaning, LogLines log)
+      : batch_(std::move(batch)), meaning_(std::move(meaning)) {
     common_.log = std::move(log);
     for (Index w = 0; w < batch_.size(); ++w)
       batch_[w].stop_when([stop = common_.interruption] { return stop->asked(); });
@@ -38,12 +38,12 @@ class HostedBatch : public std::enable_shared_from_this<HostedBatch> {
   }
   // One of the worlds, which keeps the batch alive.
   std::shared_ptr<HostedWorld> world(Index number) {
-    return std::make_shared<HostedWorld>(batch_[number], names_, common_, shared_from_this());
+    return std::make_shared<HostedWorld>(batch_[number], meaning_, common_, shared_from_this());
   }
 
  private:
   WorldBatch batch_;
-  PartNames names_;
+  KeyMeaning meaning_;
   Common common_;
 };
 

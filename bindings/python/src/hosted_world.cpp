@@ -17,21 +17,19 @@ void LogLines::pass_on() {
   }
 }
 
-HostedWorld::HostedWorld(OptionParts parts) {
-  names_.statics = parts.statics;
-  names_.gravity = parts.options.gravity;
-  parts.options.log = common_.log.writer();
-  own_.emplace(need(World::create(std::move(parts.options))));
+HostedWorld::HostedWorld(WorldOptions options, KeyMeaning meaning) : meaning_(std::move(meaning)) {
+  options.log = common_.log.writer();
+  own_.emplace(need(World::create(std::move(options))));
   world_ = &*own_;
   listen();
 }
 
-HostedWorld::HostedWorld(World& world, PartNames names, Common common, std::shared_ptr<void> owner)
-    : owner_(std::move(owner)), world_(&world), names_(std::move(names)), common_(std::move(common)) {}
+HostedWorld::HostedWorld(World& world, KeyMeaning meaning, Common common, std::shared_ptr<void> owner)
+    : owner_(std::move(owner)), world_(&world), meaning_(std::move(meaning)), common_(std::move(common)) {}
 
 // A clone writes to the log of the world that it is a clone of.
 HostedWorld::HostedWorld(World&& world, const HostedWorld& like)
-    : own_(std::move(world)), world_(&*own_), names_(like.names_) {
+    : own_(std::move(world)), world_(&*own_), meaning_(like.meaning_) {
   common_.log = like.common_.log;
   listen();
 }

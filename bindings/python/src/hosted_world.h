@@ -41,9 +41,9 @@ struct Common {
 
 class HostedWorld {
  public:
-  explicit HostedWorld(OptionParts parts);
+  HostedWorld(WorldOptions options, KeyMeaning meaning);
   // One of a batch, which `owner` keeps alive and whose calls are those of `common`.
-  HostedWorld(World& world, PartNames names, Common common, std::shared_ptr<void> owner);
+  HostedWorld(World& world, KeyMeaning meaning, Common common, std::shared_ptr<void> owner);
   HostedWorld(const HostedWorld&) = delete;
   HostedWorld& operator=(const HostedWorld&) = delete;
 
@@ -68,8 +68,8 @@ class HostedWorld {
   // From any thread, at any time.
   void cancel() { world_->cancel(); }
 
-  // What effects that are added may name.
-  PartNames& names() { return names_; }
+  // What keys of effects that are added mean.
+  KeyMeaning& meaning() { return meaning_; }
   const LogLines& log() const { return common_.log; }
 
   // None: no callback.
@@ -86,7 +86,7 @@ class HostedWorld {
   std::optional<World> own_;
   std::shared_ptr<void> owner_;  // where the world is not its own
   World* world_;
-  PartNames names_;
+  KeyMeaning meaning_;
   Common common_;
   py::object progress_;
 };

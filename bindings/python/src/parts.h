@@ -3,30 +3,21 @@
 
 #include "interop.h"
 #include "isochor/world.h"
+#include "scenes/parts_by_keys.h"
 
 namespace isochor::python {
 
-// What effects may name, and what their amounts mean.
-struct PartNames {
-  std::vector<std::string> bodies;  // by number
-  bool statics = false;
+// What keys of effects mean in a world.
+struct KeyMeaning {
+  AnalysisType analysis = AnalysisType::dynamics;
   Vec3 gravity{};
+  Curve gravity_curve = Curve::constant(1);
 
-  void put(BodyId body, const std::string& name) {
-    const auto place = static_cast<std::size_t>(body.number());
-    if (bodies.size() <= place) bodies.resize(place + 1);
-    bodies[place] = name;
-  }
+  // With the names that are in the world now.
+  PartContext in(const World& world) const;
 };
 
-struct OptionParts {
-  WorldOptions options;
-  bool statics = false;
-};
-OptionParts options_from(const std::string& keys);
-BodyDef body_from(const std::string& keys, const Mesh& mesh);
-MaterialPtr material_from(const std::string& keys);
-Selection selection_from(const std::string& keys, const PartNames& names);
-EffectPtr effect_from(const std::string& list, const std::string& keys, const PartNames& names);
+// The keys of "analysis", with "scheme" one word for statics, too.
+WorldOptions options_from(const std::string& keys, KeyMeaning& meaning);
 
 }  // namespace isochor::python

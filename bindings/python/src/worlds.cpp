@@ -7,26 +7,29 @@ namespace isochor::python {
 namespace {
 
 std::shared_ptr<HostedWorld> make(const std::string& keys) {
-  return std::make_shared<HostedWorld>(options_from(keys));
+  KeyMeaning meaning;
+  WorldOptions options = options_from(keys, meaning);
+  return std::make_shared<HostedWorld>(std::move(options), std::move(meaning));
 }
 
 BodyId add_body(HostedWorld& world, const std::shared_ptr<Mesh>& mesh, const std::string& keys) {
-  return need(world.work("add_body", [&](World& w) {
-    BodyDef def = body_from(keys, *mesh);
-    const std::string name = def.name;
-    Result<BodyId> id = w.add_body(std::move(def));
-    if (id) world.names().put(id.value(), name);
-    return id;
-  }));
+  return need(world.work("add_body",
+                         [&](World& w) { return w.add_body(need(body_from_keys(keys, "", mesh.get()))); }));
 }
 
 EffectId add(HostedWorld& world, const std::string& list, const std::string& keys) {
-  return need(world.work("add", [&](World& w) { return w.add(effect_from(list, keys, world.names())); }));
+  return need(world.work(
+      "add", [&](World& w) { return w.add(need(effect_from_keys(list, keys, world.meaning().in(w)))); }));
 }
 
 void replace(HostedWorld& world, EffectId id, const std::string& list, const std::string& keys) {
-  need(
-      world.work("replace", [&](World& w) { return w.replace(id, effect_from(list, keys, world.names())); }));
+  need(world.work("replace", [&](World& w) -> Result<void> {
+    if (auto r = w.check(id); !r) return r;
+    // Its own name is free for what takes its place.
+    PartContext context = world.meaning().in(w);
+    std::erase(context.names_taken, w.effect_name(id));
+    return w.replace(id, need(effect_from_keys(list, keys, context)));
+  }));
 }
 
 py::object why_not(HostedWorld& world, BodyId body) {
