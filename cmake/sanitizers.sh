@@ -3,13 +3,20 @@
 #   asan   all of isochor_sample_tests (tests/CMakeLists.txt says what is in it)
 #   tsan   those of its tests that step worlds on threads of their own: oneTBB is not compiled with the sanitizer, so
 #          what it synchronizes would look like races
-# Arguments choose: cmake/sanitizers.sh [asan] [tsan]
+#   calls  the C library, all of it instrumented for addresses and undefined behavior, under 10,000 sequences of random
+#          calls (tests/c/random_calls.c); not in CI
+# Arguments choose: cmake/sanitizers.sh [asan] [tsan] [calls]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 which=("$@")
 [[ ${#which[@]} -eq 0 ]] && which=(asan tsan)
 for preset in "${which[@]}"; do
+  if [[ $preset == calls ]]; then
+    cmake --preset asan -DISOCHOR_TESTS=ON -DISOCHOR_APPS=ON >/dev/null
+    ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1 cmake --build build-asan --target c_calls
+    continue
+  fi
   cmake --preset "$preset" -DISOCHOR_TESTS=ON -DISOCHOR_APPS=OFF >/dev/null
   cmake --build "build-$preset" --target isochor_sample_tests
   echo "$preset"

@@ -47,6 +47,17 @@ iso_status run(iso_world* world, const char* call, iso_report* report, const aut
   });
 }
 
+// Counted before they are read.
+std::vector<Vec3> one_a_node(World& world, BodyId body, const double* xyz, std::size_t count,
+                             std::size_t stride, const char* name) {
+  need(world.compile());
+  const std::size_t nodes = world.positions(body).size();
+  if (count != nodes)
+    refuse(std::to_string(count) + " " + name + " for the " + std::to_string(nodes) + " nodes of body \"" +
+           world.body_name(body) + "\"; give one a node");
+  return vectors(xyz, count, stride, name);
+}
+
 }  // namespace
 
 extern "C" iso_status iso_set_amount(iso_world* world, iso_effect effect, double amount) {
@@ -78,7 +89,7 @@ extern "C" iso_status iso_set_forces(iso_world* world, iso_body body, const doub
                                      size_t stride) {
   return enter(world, "iso_set_forces", [&] {
     const BodyId id = body_of(*world->world, body);
-    need(world->world->set_forces(id, vectors(forces, count, stride, "forces")));
+    need(world->world->set_forces(id, one_a_node(*world->world, id, forces, count, stride, "forces")));
   });
 }
 
@@ -104,7 +115,8 @@ extern "C" iso_status iso_set_positions(iso_world* world, iso_body body, const d
                                         size_t count, size_t stride) {
   return enter(world, "iso_set_positions", [&] {
     const BodyId id = body_of(*world->world, body);
-    need(world->world->set_positions(id, vectors(positions, count, stride, "positions")));
+    need(world->world->set_positions(id,
+                                     one_a_node(*world->world, id, positions, count, stride, "positions")));
   });
 }
 
@@ -112,7 +124,8 @@ extern "C" iso_status iso_set_velocities(iso_world* world, iso_body body, const 
                                          size_t count, size_t stride) {
   return enter(world, "iso_set_velocities", [&] {
     const BodyId id = body_of(*world->world, body);
-    need(world->world->set_velocities(id, vectors(velocities, count, stride, "velocities")));
+    need(world->world->set_velocities(
+        id, one_a_node(*world->world, id, velocities, count, stride, "velocities")));
   });
 }
 
