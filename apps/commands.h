@@ -54,6 +54,15 @@ struct StudyArguments {
   bool keep = false, untimed = false;
 };
 
+struct FitArguments {
+  std::vector<std::string> curves;  // files, with ":mode" behind
+  std::vector<std::string> laws;    // empty: all
+  std::string folder;               // empty: out/fit/NAME
+  std::string strain, stress, stress_unit;
+  std::optional<double> lowest, highest;  // engineering strain
+  bool relative = false, json = false, quiet = false;
+};
+
 struct ViewArguments {
   std::string folder;
   bool remake = false;         // from the frames, even where there is a page
@@ -63,6 +72,7 @@ struct ViewArguments {
 int run(const RunArguments& arguments);
 int view(const ViewArguments& arguments);
 int study(const StudyArguments& arguments);
+int fit_laws(const FitArguments& arguments);
 // The study of random scenes; `stop` is asked now and then.
 int chaos(const StudyArguments& arguments, const std::function<bool()>& stop);
 int show(const std::string& scene, const std::vector<std::string>& overrides);

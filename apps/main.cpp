@@ -69,6 +69,29 @@ void add_study(CLI::App& top, app::StudyArguments& a) {
   c->footer("A study that is stopped (Ctrl-C) leaves what it has; the same command goes on from there.");
 }
 
+void add_fit(CLI::App& top, app::FitArguments& a) {
+  CLI::App* c = top.add_subcommand("fit", "Find constants of material laws from measured curves");
+  c->add_option("curve", a.curves,
+                "CSV files with strain (or stretch) and stress; FILE:equibiaxial, FILE:pure_shear for other "
+                "modes than "
+                "uniaxial")
+      ->required();
+  c->add_option("--law", a.laws, "Law to fit, may be given again; default all")->allow_extra_args(false);
+  c->add_option("--strain", a.strain, "Column of the strain; default by its name")->type_name("NAME");
+  c->add_option("--stress", a.stress, "Column of the stress; default by its name")->type_name("NAME");
+  c->add_option("--stress-unit", a.stress_unit, "Of the stress, where its column does not say")
+      ->check(CLI::IsMember({"Pa", "kPa", "MPa"}));
+  c->add_option("--from", a.lowest, "Least engineering strain that counts")->type_name("STRAIN");
+  c->add_option("--to", a.highest,
+                "Largest engineering strain that counts; default where the stress is largest")
+      ->type_name("STRAIN");
+  c->add_flag("--relative", a.relative,
+              "Errors over the measured stress, in place of over the largest of a curve");
+  c->add_option("--out", a.folder, "Folder of the outputs; default out/fit/NAME")->type_name("DIR");
+  c->add_flag("--json", a.json, "Print fit.json");
+  c->add_flag("--quiet", a.quiet, "Print errors only");
+}
+
 void add_view(CLI::App& top, app::ViewArguments& a) {
   CLI::App* c = top.add_subcommand("view", "Open the results page of a folder; make it where it is missing");
   c->add_option("folder", a.folder, "What `isochor run` or `isochor study` wrote: out/finger")->required();
@@ -83,6 +106,7 @@ int dispatch(int argc, char** argv) {
   app::RunArguments run;
   app::StudyArguments study;
   app::ViewArguments view;
+  app::FitArguments fit;
   bool json = false;
   double scale = 1;
   std::vector<std::string> meshes, overrides;
@@ -92,6 +116,7 @@ int dispatch(int argc, char** argv) {
   add_run(top, run);
   add_study(top, study);
   add_view(top, view);
+  add_fit(top, fit);
   CLI::App* check =
       top.add_subcommand("check", "Check mesh files: counts and findings; exit 2 if one is not usable");
   check->add_option("mesh", meshes, "Mesh files (.msh, .vtk, .vtu, .node/.ele, .mesh)")->required();
@@ -124,6 +149,7 @@ int dispatch(int argc, char** argv) {
     return app::keys(schema ? app::KeysAs::schema : tables ? app::KeysAs::tables : app::KeysAs::lines);
   }
   if (version->parsed()) return app::version(json);
+  if (top.got_subcommand("fit")) return app::fit_laws(fit);
   if (top.got_subcommand("study")) return app::study(study);
   if (top.got_subcommand("view")) return app::view(view);
   return app::run(run);

@@ -1,0 +1,417 @@
+// Outline of a fit:
+//   1. starts: the shear modulus from the slope of the data at rest, times what the law makes of it
+//   2. from each start a bounded least-squares search over constants divided by their scale; derivatives by
+//      central differences
+//   3. the best end: errors, intervals from the Gauss-Newton matrix, directions that the data do not see
+//   4. the law beyond the data: where it is stable, how uncertain it is in modes that were not measured
+#include "studies/fit/fit.h"
+
+#include <ceres/ceres.h>
+#include <glog/logging.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "engine/elements/material_model.h"
+#include "scenes/parts_by_keys.h"
+
+namespace isochor::fit {
+
+namespace {
+
+using Values = std::vector<double>;
+
+Result<MaterialPtr> material_from(const std::string& keys) {
+  auto made = material_from_keys(keys, "");
+  if (!made) return Error{made.error()};
+  return made.value().material;
+}
+
+// Weighted errors of all points.
+class Problem {
+ public:
+  Problem(const Law& law, const std::vector<Curve>& curves, Weights weights) : law_(law), curves_(curves) {
+    for (const Curve& curve : curves) {
+      double largest = 0;
+      for (const double s : curve.stress) largest = std::max(largest, std::abs(s));
+      // Each curve counts as much as another, however many points it has.
+      const double share = 1 / std::sqrt(static_cast<double>(curve.stress.size()));
+      for (const double s : curve.stress)
+        scale_.push_back(share /
+                         (weights == Weights::absolute ? largest : std::max(std::abs(s), 0.05 * largest)));
+    }
+  }
+
+  std::size_t size() const { return scale_.size(); }
+  const std::vector<Curve>& curves() const { return curves_; }
+
+  // Predicted stresses minus measured ones [Pa]; false where the law has no value.
+  bool errors(const Values& constants, std::vector<double>& out) const {
+    const auto material = material_from(law_.keys(constants));
+    if (!material) return false;
+    out.clear();
+    for (const Curve& curve : curves_) {
+      for (std::size_t i = 0; i < curve.stress.size(); ++i) {
+        out.push_back(stress(*material.value(), curve.mode, curve.stretch[i]) - curve.stress[i]);
+        if (!std::isfinite(out.back())) return false;
+      }
+    }
+    return true;
+  }
+  double scale(std::size_t i) const { return scale_[i]; }
+
+ private:
+  const Law& law_;
+  const std::vector<Curve>& curves_;
+  std::vector<double> scale_;
+};
+
+// Of Ceres: constants over their scale in, weighted errors out.
+struct Residuals {
+  const Problem* problem;
+  Values unit;
+  bool operator()(double const* const* parameters, double* out) const {
+    Values constants(unit.size());
+    for (std::size_t i = 0; i < unit.size(); ++i) constants[i] = parameters[0][i] * unit[i];
+    std::vector<double> errors;
+    if (!problem->errors(constants, errors)) return false;
+    for (std::size_t i = 0; i < errors.size(); ++i) out[i] = errors[i] * problem->scale(i);
+    return true;
+  }
+};
+
+struct Stop : ceres::IterationCallback {
+  explicit Stop(const std::function<bool()>& asked) : stop(asked) {}
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
+    return stop && stop() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+  }
+  const std::function<bool()>& stop;
+};
+
+struct Search {
+  bool converged = false;
+  std::string reason;
+  double cost = std::numeric_limits<double>::infinity();
+  Values x;                  // over their scale
+  Eigen::MatrixXd jacobian;  // of weighted errors by x
+};
+
+// Errors with their derivatives by central differences.
+using Cost = ceres::DynamicNumericDiffCostFunction<Residuals, ceres::CENTRAL>;
+
+Cost* cost_of(const Problem& problem, const Values& unit) {
+  auto* cost = new Cost(new Residuals{&problem, unit});
+  cost->AddParameterBlock(static_cast<int>(unit.size()));
+  cost->SetNumResiduals(static_cast<int>(problem.size()));
+  return cost;
+}
+
+// Of a constant over its scale. What must be positive stays a hair away from 0, so that differences across do
+// too.
+std::pair<double, double> bounds_of(const Constant& c, double start, double unit) {
+  const double hair = 1e-6;
+  const double least = c.least == 0 ? hair : c.least / unit, most = c.most / unit;
+  if (!c.keeps_sign) return {least, most};
+  return start > 0 ? std::pair(0.1, most) : std::pair(least, -0.1);
+}
+
+Search search_from(const Problem& problem, const Law& law, const Values& unit, const Values& start,
+                   const FitOptions& options) {
+  const std::size_t n = unit.size();
+  Search out;
+  out.x.resize(n);
+  ceres::Problem least_squares;
+  for (std::size_t i = 0; i < n; ++i) out.x[i] = start[i] / unit[i];
+  least_squares.AddResidualBlock(cost_of(problem, unit), nullptr, out.x.data());
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto at = static_cast<int>(i);
+    const auto [least, most] = bounds_of(law.constants[i], start[i], unit[i]);
+    if (std::isfinite(least)) least_squares.SetParameterLowerBound(out.x.data(), at, least);
+    if (std::isfinite(most)) least_squares.SetParameterUpperBound(out.x.data(), at, most);
+  }
+  Stop stop(options.stop);
+  ceres::Solver::Options how;
+  how.linear_solver_type = ceres::DENSE_QR;
+  how.max_num_iterations = options.max_iterations;
+  how.function_tolerance = 1e-15;
+  how.gradient_tolerance = 1e-14;
+  how.parameter_tolerance = 1e-12;
+  how.logging_type = ceres::SILENT;
+  how.num_threads = 1;
+  how.callbacks.push_back(&stop);
+  ceres::Solver::Summary summary;
+  ceres::Solve(how, &least_squares, &summary);
+  out.converged = summary.termination_type == ceres::CONVERGENCE;
+  out.reason = out.converged ? "" : summary.message;
+  out.cost = summary.IsSolutionUsable() ? summary.final_cost : std::numeric_limits<double>::infinity();
+  return out;
+}
+
+// Derivatives of the weighted errors at the end of a search; false where the law has no value around it.
+bool differentiate(const Problem& problem, const Values& unit, Search& best) {
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Matrix jacobian(static_cast<Eigen::Index>(problem.size()), static_cast<Eigen::Index>(unit.size()));
+  const std::unique_ptr<Cost> cost(cost_of(problem, unit));
+  double* rows = jacobian.data();
+  const double* x = best.x.data();
+  std::vector<double> errors(problem.size());
+  if (!cost->Evaluate(&x, errors.data(), &rows)) return false;
+  best.jacobian = jacobian;
+  return true;
+}
+
+// Shear modulus that the data begin with: least squares on the points of the first tenth of the stretch, of
+// P = mu (what a neo-Hookean block answers with mu = 1).
+double first_modulus(const std::vector<Curve>& curves) {
+  double above = 0, below = 0;
+  for (const Curve& curve : curves) {
+    const double last = *std::max_element(curve.stretch.begin(), curve.stretch.end());
+    for (std::size_t i = 0; i < curve.stretch.size(); ++i) {
+      const double s = curve.stretch[i];
+      if (s > 1 + 0.25 * (last - 1) && above > 0) continue;
+      const double power = curve.mode == Mode::uniaxial ? -2 : (curve.mode == Mode::equibiaxial ? -5 : -3);
+      const double one = s - std::pow(s, power);
+      above += one * curve.stress[i];
+      below += one * one;
+    }
+  }
+  return below > 0 && above > 0 ? above / below : 1e4;
+}
+
+double largest_stretch(const std::vector<Curve>& curves) {
+  double most = 1;
+  for (const Curve& curve : curves)
+    for (const double s : curve.stretch) most = std::max(most, s);
+  return most;
+}
+
+// The 0.975 quantile of Student's t, by its expansion in 1/n about that of the normal distribution
+// (Abramowitz & Stegun 26.7.5).
+double student(double n) {
+  constexpr double z = 1.959963984540054;
+  const double z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
+  return z + (z3 + z) / (4 * n) + (5 * z5 + 16 * z3 + 3 * z) / (96 * n * n) +
+         (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * n * n * n);
+}
+
+// Names of the constants that a direction moves most.
+std::string names_along(const Law& law, const Eigen::VectorXd& direction) {
+  std::string names;
+  const double most = direction.cwiseAbs().maxCoeff();
+  for (std::size_t i = 0; i < law.constants.size(); ++i) {
+    if (std::abs(direction[static_cast<Eigen::Index>(i)]) > 0.3 * most)
+      names += (names.empty() ? "" : " and ") + law.constants[i].name;
+  }
+  return names;
+}
+
+// Covariance of x from the Jacobian of weighted errors; constants at a bound are known to be there.
+// Directions that errors do not see are named, and have infinite variance.
+Eigen::MatrixXd covariance(const Law& law, const Search& best, Fit& fit, double variance) {
+  const auto n = static_cast<Eigen::Index>(best.x.size());
+  Eigen::MatrixXd j = best.jacobian;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (fit.constants[static_cast<std::size_t>(i)].at_bound) j.col(i).setZero();
+  }
+  Eigen::VectorXd norm = j.colwise().norm();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (norm[i] > 0) j.col(i) /= norm[i];
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(j, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const double s = svd.singularValues()[k];
+    const Eigen::VectorXd direction = svd.matrixV().col(k);
+    if (s < 1e-14 * svd.singularValues()[0]) continue;  // at a bound
+    if (s < 1e-6 * svd.singularValues()[0]) {
+      fit.warnings.push_back(
+          names_along(law, direction) +
+          " cannot be told apart by these data; fit fewer constants or measure another mode");
+    }
+    out += variance / (s * s) * direction * direction.transpose();
+  }
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index k = 0; k < n; ++k) out(i, k) /= std::max(norm[i], 1e-300) * std::max(norm[k], 1e-300);
+  }
+  return out;
+}
+
+void measure_errors(const Problem& problem, const std::vector<double>& errors, Fit& fit) {
+  double squares = 0, sum = 0, all = 0;
+  for (const Curve& curve : problem.curves())
+    for (const double s : curve.stress) sum += s;
+  const double mean = sum / static_cast<double>(errors.size());
+  for (const Curve& curve : problem.curves())
+    for (const double s : curve.stress) all += (s - mean) * (s - mean);
+  for (const double e : errors) {
+    squares += e * e;
+    fit.worst = std::max(fit.worst, std::abs(e));
+  }
+  fit.rms = std::sqrt(squares / static_cast<double>(errors.size()));
+  fit.r2 = all > 0 ? 1 - squares / all : 0;
+}
+
+constexpr Mode kModes[] = {Mode::uniaxial, Mode::equibiaxial, Mode::pure_shear};
+
+// Whether the nominal stress of all modes rises between two stretches.
+bool rises(const MaterialModel& material, double from, double to) {
+  for (const Mode mode : kModes) {
+    const double rise = stress(material, mode, to) - stress(material, mode, from);
+    if (std::isfinite(rise) && !(rise > 0)) return false;
+  }
+  return true;
+}
+
+void look_at_stability(const MaterialModel& material, double largest, Fit& fit) {
+  fit.looked_from = 0.25;
+  fit.looked_to = 2 * largest;
+  constexpr int steps = 400;
+  const auto last_rising = [&](double end) {
+    double before = 1;
+    for (int i = 1; i <= steps; ++i) {
+      const double next = std::pow(end, static_cast<double>(i) / steps);
+      if (!(end > 1 ? rises(material, before, next) : rises(material, next, before))) return before;
+      before = next;
+    }
+    return end;
+  };
+  fit.stable_from = last_rising(fit.looked_from);
+  fit.stable_to = last_rising(fit.looked_to);
+  if (fit.stable_to >= largest) return;
+  char text[200];
+  std::snprintf(
+      text, sizeof text,
+      "the law is stable up to a stretch of %.3g, and data go to %.3g: take another law or a smaller range",
+      fit.stable_to, largest);
+  fit.warnings.emplace_back(text);
+}
+
+// How uncertain predictions are in modes that were not measured: the gradient of the stress by the constants,
+// times their covariance.
+void look_at_other_modes(const Law& law, const Search& best, const Values& unit,
+                         const Eigen::MatrixXd& covariance, const std::vector<Curve>& curves, double quantile,
+                         Fit& fit) {
+  const double at = largest_stretch(curves);
+  for (const Mode mode : kModes) {
+    if (std::any_of(curves.begin(), curves.end(), [&](const Curve& c) { return c.mode == mode; })) continue;
+    const auto predicted = [&](const Values& x) {
+      Values constants(x.size());
+      for (std::size_t i = 0; i < x.size(); ++i) constants[i] = x[i] * unit[i];
+      const auto material = material_from(law.keys(constants));
+      return material ? stress(*material.value(), mode, at) : std::numeric_limits<double>::quiet_NaN();
+    };
+    const double here = predicted(best.x);
+    Eigen::VectorXd gradient(static_cast<Eigen::Index>(best.x.size()));
+    for (std::size_t i = 0; i < best.x.size(); ++i) {
+      const double h = 1e-5 * std::max(std::abs(best.x[i]), 1e-3);
+      Values above = best.x, below = best.x;
+      above[i] += h;
+      below[i] -= h;
+      gradient[static_cast<Eigen::Index>(i)] = (predicted(above) - predicted(below)) / (2 * h);
+    }
+    const double half = quantile * std::sqrt(std::max(0.0, gradient.dot(covariance * gradient)));
+    if (!std::isfinite(here) || !std::isfinite(half)) continue;
+    const double relative = half / std::max(std::abs(here), 1e-300);
+    fit.uncertainty[word(mode)] = relative;
+    if (relative < 0.2) continue;
+    char text[240];
+    std::snprintf(text, sizeof text,
+                  "these data leave the law undetermined in %s: its stress at a stretch of %.3g is known to "
+                  "+- %.0f %%; measure that mode",
+                  word(mode), at, 100 * relative);
+    fit.warnings.emplace_back(text);
+  }
+}
+
+void quiet() {
+  static const bool once = [] {
+    // What a trial without a value makes Ceres say is no news to the user.
+    FLAGS_minloglevel = 3;
+    FLAGS_logtostderr = true;
+    return true;
+  }();
+  (void)once;
+}
+
+bool at_bound(const Constant& c, double x, double unit) {
+  const auto [least, most] = bounds_of(c, x, unit);
+  const double tolerance = 1e-9 * std::max(1.0, std::abs(x));
+  return x <= least + tolerance || x >= most - tolerance;
+}
+
+}  // namespace
+
+Fit fit(const Law& law, const std::vector<Curve>& curves, const FitOptions& options) {
+  quiet();
+  Fit out;
+  out.law = law.name;
+  const Problem problem(law, curves, options.weights);
+  const std::size_t n = law.constants.size();
+  if (problem.size() < n) {
+    out.reason = "the data have " + std::to_string(problem.size()) + " points for " + std::to_string(n) +
+                 " constants; give more points or take a law with fewer constants";
+    return out;
+  }
+  const double modulus = first_modulus(curves), largest = largest_stretch(curves);
+  double invariant = 0;
+  for (const Curve& curve : curves)
+    for (const double s : curve.stretch) invariant = std::max(invariant, first_invariant(curve.mode, s));
+  Values unit(n, 1.0);
+  for (std::size_t i = 0; i < n; ++i) unit[i] = law.constants[i].stiffness() ? modulus : 1.0;
+
+  Search best;
+  for (const Values& start : law.starts(modulus, invariant)) {
+    Search found = search_from(problem, law, unit, start, options);
+    if (best.x.empty() || found.cost < best.cost) best = std::move(found);
+    if (options.stop && options.stop()) break;
+  }
+  const bool found = std::isfinite(best.cost) && differentiate(problem, unit, best);
+  out.converged = best.converged && found;
+  if (best.reason.empty() && !found) best.reason = "the law has no value around the end of the search";
+  out.reason = out.converged ? "" : "no minimum was found: " + best.reason;
+  if (!found) return out;
+
+  Values constants(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    constants[i] = best.x[i] * unit[i];
+    const Constant& c = law.constants[i];
+    FittedConstant made{c.name, c.unit, constants[i], 0, at_bound(c, best.x[i], unit[i])};
+    if (made.at_bound)
+      out.warnings.push_back(c.name + " is at the end of its range; the law asks for no such part");
+    out.constants.push_back(made);
+  }
+  out.keys = law.keys(constants);
+  const auto material = material_from(out.keys);
+  if (!material) {
+    out.converged = false;
+    out.reason = material.error();
+    return out;
+  }
+  out.shear_modulus = material.value()->shear_modulus();
+  std::vector<double> errors;
+  (void)problem.errors(constants, errors);
+  measure_errors(problem, errors, out);
+
+  const double freedom = static_cast<double>(problem.size() - n);
+  const double variance = freedom > 0 ? 2 * best.cost / freedom : 0;
+  const double quantile = freedom > 0 ? student(freedom) : 0;
+  const Eigen::MatrixXd known = covariance(law, best, out, variance);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    out.constants[i].half_width =
+        freedom > 0 ? quantile * std::sqrt(known(at, at)) * unit[i] : std::numeric_limits<double>::infinity();
+  }
+  look_at_stability(*material.value(), largest, out);
+  look_at_other_modes(law, best, unit, known, curves, quantile, out);
+  return out;
+}
+
+Result<MaterialPtr> material_of(const Fit& fit) {
+  if (fit.keys.empty()) return Error{fit.law + ": " + fit.reason};
+  return material_from(fit.keys);
+}
+
+}  // namespace isochor::fit
