@@ -79,6 +79,12 @@ inline double equibiaxial(const Block& block, double stretch, double& side) {
   return block.along_x(stretch, y, side, false);
 }
 
+// Pulled along x at constant length along y, z free: pure shear.
+inline double pure_shear(const Block& block, double stretch, double& side) {
+  double y = 1;
+  return block.along_x(stretch, y, side, false);
+}
+
 // Sheared by gamma at constant height: the shear stress.
 inline double simple_shear(const Block& block, double gamma) {
   return evaluate(*block.energy, {1, gamma, 0, 0, 1, 0, 0, 0, 1}).P[1];

@@ -26,6 +26,7 @@ struct Law {
 struct Picture {
   std::string file;
   std::vector<Law> laws;
+  bool pure_shear = false;  // in place of simple shear
 };
 
 ElasticConstants constants(double poisson) {
@@ -94,6 +95,95 @@ std::vector<Picture> pictures() {
            if (!matrix) return matrix;
            return with_fibers(std::move(matrix).value(), {{{1, 0, 0}, 1, 1, 0, {}}});
          }}}},
+      {"uncoupled",
+       {{"isochoric_mooney_rivlin, c2 = c1/4",
+         [](double nu) {
+           return isochoric_mooney_rivlin({0.4, 0.1, nu});
+         }},
+        {"isochoric_ogden, alpha = 1.3, 5, -2 (Treloar's rubber)",
+         [](double nu) {
+           const double scale = 2 / (0.63 * 1.3 + 0.0012 * 5 + 0.01 * 2);
+           return isochoric_ogden({{{0.63 * scale, 1.3}, {0.0012 * scale, 5}, {-0.01 * scale, -2}}, nu});
+         }}},
+       true},
+      {"yeoh",
+       {{"isochoric_yeoh, c = 1/2, -1/50, 1/1000",
+         [](double nu) {
+           return isochoric_yeoh({{0.5, -0.02, 0.001}, nu});
+         }},
+        {"yeoh, the same",
+         [](double nu) {
+           return yeoh({{0.5, -0.02, 0.001}, nu});
+         }}},
+       true},
+      {"gent",
+       {{"isochoric_gent, jm = 10",
+         [](double nu) {
+           return isochoric_gent({1, 10, nu});
+         }},
+        {"gent, jm = 10",
+         [](double nu) {
+           return gent({1, 10, nu});
+         }}},
+       true},
+      {"chains",
+       {{"isochoric_arruda_boyce, locking stretch 2",
+         [](double nu) {
+           constexpr double n = 4;
+           const double slope = 1 + 3 / (5 * n) + 99 / (175 * n * n) + 513 / (875 * n * n * n) +
+                                81 * 519 / (67375 * n * n * n * n);
+           return isochoric_arruda_boyce({1 / slope, 0, 0, nu, 0, 0, 2});
+         }},
+        {"isochoric_fung, mu0 = 0.5, mu1 = 0.2, gamma = 2.5",
+         [](double nu) {
+           return isochoric_fung({0.5, 0.2, 2.5, nu});
+         }}},
+       true},
+      {"veronda_westmann",
+       {{"isochoric_veronda_westmann, c2 = 0.5",
+         [](double nu) {
+           return isochoric_veronda_westmann({2, 0.5, nu});
+         }},
+        {"veronda_westmann, c2 = 0.1, log J",
+         [](double nu) {
+           return veronda_westmann({10, 0.1, nu, {VolumeEnergy::logarithmic, -1}});
+         }}},
+       true},
+      {"holmes_mow",
+       {{"isochoric_holmes_mow, beta = 0.3",
+         [](double nu) {
+           return isochoric_holmes_mow({1, 0.3, nu});
+         }},
+        {"holmes_mow, beta = 0.3",
+         [](double nu) {
+           return holmes_mow({1, 0.3, nu});
+         }}},
+       true},
+      {"fiber_laws",
+       {{"isochoric, k1 = mu, k2 = 1, dispersion 0.1",
+         [](double nu) -> Result<MaterialPtr> {
+           auto matrix = isochoric_yeoh({{0.5}, nu});
+           if (!matrix) return matrix;
+           FiberFamily f;
+           f.k1 = f.k2 = 1;
+           f.dispersion = 0.1;
+           f.isochoric = true;
+           return with_fibers(std::move(matrix).value(), {f});
+         }},
+        {"toe, k1 = mu/2, k2 = 5, straight from 1.3",
+         [](double nu) -> Result<MaterialPtr> {
+           auto matrix = isochoric_yeoh({{0.5}, nu});
+           if (!matrix) return matrix;
+           FiberFamily f;
+           f.law = FiberLaw::toe;
+           f.k1 = 0.5;
+           f.k2 = 5;
+           f.straight_modulus = 11;
+           f.straight_stretch = 1.3;
+           f.isochoric = true;
+           return with_fibers(std::move(matrix).value(), {f});
+         }}},
+       true},
       {"compression_penalty",
        {{"isochoric_extended, penalty 2 mu, beta = 0",
          [](double nu) -> Result<MaterialPtr> {
@@ -123,7 +213,7 @@ struct Panel {
 
 // Curves of one block in the four panels.
 void draw(const response::Block& block, const std::string& color, const std::string& dash, double width,
-          Panel panels[4]) {
+          bool pure_shear, Panel panels[4]) {
   constexpr int n = 80;
   Curve c[4];
   for (Curve& curve : c) curve.color = color, curve.dash = dash, curve.width = width;
@@ -132,7 +222,7 @@ void draw(const response::Block& block, const std::string& color, const std::str
     if (kind == 3 && block.incompressible) continue;
     // From rest outward both ways, so that each state starts from its neighbor.
     for (const double end : {p.x0, p.x1}) {
-      const double rest = kind == 2 ? 0 : 1;
+      const double rest = kind == 2 && !pure_shear ? 0 : 1;
       double side = 1;
       std::vector<std::pair<double, double>> points;
       for (int i = 0; i <= n; ++i) {
@@ -140,7 +230,8 @@ void draw(const response::Block& block, const std::string& color, const std::str
         double y = 0;
         if (kind == 0) y = response::uniaxial(block, x, side);
         if (kind == 1) y = response::equibiaxial(block, x, side);
-        if (kind == 2) y = response::simple_shear(block, x);
+        if (kind == 2)
+          y = pure_shear ? response::pure_shear(block, x, side) : response::simple_shear(block, x);
         if (kind == 3) y = response::volumetric(block, x);
         if (!std::isfinite(y)) break;
         points.push_back({x, y});
@@ -223,13 +314,17 @@ bool draw_picture(const Picture& picture, const std::string& folder) {
                      {"equibiaxial", "stretch", "nominal stress / μ", 0.4, 3, -6, 6, 0.4, 2, {}},
                      {"simple shear", "shear γ", "shear stress / μ", 0, 2, 0, 4, 0.5, 1, {}},
                      {"volumetric", "J", "tr σ / 3μ", 0.2, 2, -6, 3, 0.2, 1, {}}};
+  if (picture.pure_shear) {
+    panels[2] = {"pure shear", "stretch", "nominal stress / μ", 0.4, 3, -6, 6, 0.4, 2, {}};
+  }
   const auto add = [&](const Law& law, double nu, const std::string& color, const char* dash, double width) {
     auto made = law.make(nu);
     if (!made) {
       std::fprintf(stderr, "%s at nu = %g: %s\n", law.name.c_str(), nu, made.error().c_str());
       std::exit(1);
     }
-    if (const auto block = response::Block::of(*made.value())) draw(*block, color, dash, width, panels);
+    if (const auto block = response::Block::of(*made.value()))
+      draw(*block, color, dash, width, picture.pure_shear, panels);
   };
   constexpr const char* colors[] = {"#0b62a4", "#d1495b"};
   add(elastic("neo_hookean", neo_hookean), 0.5, "#b0b0b0", "", 4);

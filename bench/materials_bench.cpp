@@ -66,26 +66,52 @@ MaterialPtr must(Result<MaterialPtr> r) {
   return std::move(r).value();
 }
 
+FiberFamily isochoric_fibers(FiberLaw law) {
+  FiberFamily f;
+  f.direction = {1, 1, 0};
+  f.k1 = 5e4;
+  f.k2 = 1.5;
+  f.law = law;
+  f.isochoric = true;
+  if (law == FiberLaw::toe) f.straight_stretch = 1.2, f.straight_modulus = 1e5;
+  return f;
+}
+
 std::vector<MaterialPtr> shelf() {
   ElasticConstants c;
   c.young = 1e5;
   c.poisson = 0.45;
-  return {must(neo_hookean(c)),
-          must(neo_hookean_ogden(c)),
-          must(stable_neo_hookean(c)),
-          must(stable_neo_hookean_barrier(c)),
-          must(isochoric_neo_hookean(c)),
-          must(isochoric_extended(c)),
-          must(mooney_rivlin({2e4, 1e4, 0.45})),
-          must(fung({2e4, 0.3, 4e4, 0.45})),
-          must(arruda_boyce({3e4, 0.02, 0.001, 0.45})),
-          must(ogden({{{6e4, 1.3}, {1e3, 5}, {-1e4, -2}}, 0.45})),
-          must(corotated(c)),
-          must(fixed_corotated(c)),
-          must(stvk(c)),
-          must(stvk_resistant(c, 1e6)),
-          must(linear(c)),
-          must(with_fibers(must(neo_hookean(c)), {{{1, 1, 0}, 5e4, 1.5, 0, {}}}))};
+  return {
+      must(neo_hookean(c)),
+      must(neo_hookean_ogden(c)),
+      must(stable_neo_hookean(c)),
+      must(stable_neo_hookean_barrier(c)),
+      must(isochoric_neo_hookean(c)),
+      must(isochoric_extended(c)),
+      must(mooney_rivlin({2e4, 1e4, 0.45})),
+      must(fung({2e4, 0.3, 4e4, 0.45})),
+      must(arruda_boyce({3e4, 0.02, 0.001, 0.45})),
+      must(ogden({{{6e4, 1.3}, {1e3, 5}, {-1e4, -2}}, 0.45})),
+      must(isochoric_mooney_rivlin({2e4, 1e4, 0.45, 1e3, 1e3, 1e3, {}})),
+      must(yeoh({{2e4, -1e2, 1e1}, 0.45, {}})),
+      must(isochoric_yeoh({{2e4, -1e2, 1e1}, 0.45, {}})),
+      must(isochoric_fung({2e4, 0.3, 4e4, 0.45, {}})),
+      must(isochoric_arruda_boyce({3e4, 0.02, 0.001, 0.45, 0, 0, 0, {}})),
+      must(gent({3e4, 90, 0.45, {}})),
+      must(isochoric_gent({3e4, 90, 0.45, {}})),
+      must(veronda_westmann({6e4, 0.5, 0.45, {VolumeEnergy::logarithmic, -1}})),
+      must(isochoric_veronda_westmann({6e4, 0.5, 0.45, {}})),
+      must(holmes_mow({3e4, 0.5, 0.45})),
+      must(isochoric_holmes_mow({3e4, 0.5, 0.45})),
+      must(isochoric_ogden({{{6e4, 1.3}, {1e3, 5}, {-1e4, -2}}, 0.45})),
+      must(corotated(c)),
+      must(fixed_corotated(c)),
+      must(stvk(c)),
+      must(stvk_resistant(c, 1e6)),
+      must(linear(c)),
+      must(with_fibers(must(neo_hookean(c)), {{{1, 1, 0}, 5e4, 1.5, 0, {}}})),
+      must(with_fibers(must(isochoric_yeoh({{2e4}, 0.45, {}})), {isochoric_fibers(FiberLaw::exponential)})),
+      must(with_fibers(must(isochoric_yeoh({{2e4}, 0.45, {}})), {isochoric_fibers(FiberLaw::toe)}))};
 }
 
 // Slots of a pool, as the assembly holds them.

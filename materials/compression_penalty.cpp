@@ -82,6 +82,9 @@ class PenalizedModel final : public MaterialModel {
   double poisson() const override { return with_penalty(base_->poisson(), shear_modulus()); }
   double young() const override { return 2 * shear_modulus() * (1 + poisson()); }
   bool defined_inverted() const override { return base_->defined_inverted(); }
+  VolumeStrain volume_strain() const override { return base_->volume_strain(); }
+  std::vector<std::string> warnings() const override { return base_->warnings(); }
+  bool has_separate_volume() const override { return base_->has_separate_volume(); }
   std::size_t field_cells() const override { return base_->field_cells(); }
   double stiffness_factor(Index cell) const override { return base_->stiffness_factor(cell); }
   double inverse_bulk_of(Index cell) const override { return base_->inverse_bulk_of(cell); }

@@ -21,6 +21,9 @@ class Model final : public MaterialModel {
   double poisson() const override { return m_.small_strain.poisson; }
   double young() const override { return m_.small_strain.young; }
   bool defined_inverted() const override { return m_.defined_inverted; }
+  VolumeStrain volume_strain() const override { return m_.strain; }
+  std::vector<std::string> warnings() const override { return m_.warnings; }
+  bool has_separate_volume() const override { return m_.separate_volume; }
 
  private:
   EnergyModel m_;

@@ -13,6 +13,9 @@ struct EnergyModel {
   std::shared_ptr<const Material> distortional;
   std::shared_ptr<const Material> complete;  // null at nu = 0.5
   bool defined_inverted = false;
+  VolumeStrain strain = VolumeStrain::linear;  // MaterialModel::volume_strain()
+  std::vector<std::string> warnings = {};
+  bool separate_volume = true;
 };
 MaterialPtr make_model(EnergyModel model);
 

@@ -1,6 +1,10 @@
-// psi_f = k1/(2 k2) (exp(k2 E^2) - 1) [Pa] for E = F H : F - 1 > 0, else 0, added to a material of any kind
-// (Holzapfel, Gasser & Ogden 2000; with dispersion Gasser, Ogden & Holzapfel 2006). H = d 1 + (1 - 3 d) a a^T
-// has unit trace; F H : F is the mean squared stretch of the fibers.
+// Fibers that only pull, added to a material of any kind. Their energy is a function of E = H : C - 1 with
+// the structure tensor H = d 1 + (1 - 3 d) a a^T of unit trace, so that H : C is the mean squared stretch of
+// the fibers, or of E = J^(-2/3) H : C - 1.
+//   exponential: k1/(b k2) (exp(k2 E^b) - 1) (Holzapfel, Gasser & Ogden 2000 with b = 2; with dispersion
+//                Gasser, Ogden & Holzapfel 2006);
+//   toe:         by the stretch s = sqrt(1 + E), see FiberLaw (Weiss, Maker & Govindjee 1996).
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -29,6 +33,10 @@ Structure structure(const Vec3& a, double dispersion) {
 
 struct Family {
   double k1 = 0, k2 = 0;
+  FiberLaw law = FiberLaw::exponential;
+  double exponent = 2;
+  bool isochoric = false;
+  double straight_modulus = 0, straight_stretch = 0;
   std::vector<Structure> H;  // one for all, or one an element
   const Structure& at_element(Index e) const { return H[H.size() == 1 ? 0 : at(e)]; }
 };
@@ -37,14 +45,46 @@ struct FiberResponse {
   double psi, first, second;  // and its derivatives in E
 };
 
+constexpr FiberResponse kNone{std::numeric_limits<double>::infinity(), 0, 0};
+
+// T = s dpsi/ds over the stretch s > 1.
+FiberResponse toe(const Family& f, double E) {
+  const double s = std::sqrt(1 + E), end = std::min(s, f.straight_stretch);
+  // The integral of k1 (exp(k2 (s - 1)) - 1)/s by the exponential integral.
+  const double shrink = std::exp(-f.k2);
+  double psi = f.k1 * (shrink * (std::expint(f.k2 * end) - std::expint(f.k2)) - std::log(end));
+  double T = f.k1 * std::expm1(f.k2 * (end - 1)), slope = f.k1 * f.k2 * std::exp(f.k2 * (end - 1));
+  if (s > end) {
+    const double offset = T - f.straight_modulus * end;
+    psi += f.straight_modulus * (s - end) + offset * std::log(s / end);
+    T = f.straight_modulus * s + offset;
+    slope = f.straight_modulus;
+  }
+  if (!std::isfinite(psi)) return kNone;
+  const double s2 = s * s;
+  return {psi, T / (2 * s2), (slope * s - 2 * T) / (4 * s2 * s2)};
+}
+
 FiberResponse respond(const Family& f, double E) {
   if (!(E > 0)) return {0, 0, 0};
-  const double x = f.k2 * E * E;
-  if (x > 690) return {std::numeric_limits<double>::infinity(), 0, 0};  // beyond the range of numbers
+  if (f.law == FiberLaw::toe) return toe(f, E);
+  const double b = f.exponent, power = b == 2 ? E : std::pow(E, b - 1);  // E^(b - 1)
+  const double x = f.k2 * power * E;
+  if (x > 690) return kNone;  // beyond the range of numbers
   const double growth = std::exp(x);
-  const double psi = f.k2 > 0 ? f.k1 / (2 * f.k2) * std::expm1(x) : 0.5 * f.k1 * E * E;
-  return {psi, f.k1 * E * growth, f.k1 * (1 + 2 * x) * growth};
+  const double psi = f.k2 > 0 ? f.k1 / (b * f.k2) * std::expm1(x) : f.k1 / b * power * E;
+  if (b == 2) return {psi, f.k1 * E * growth, f.k1 * (1 + 2 * x) * growth};
+  return {psi, f.k1 * power * growth, f.k1 * (b - 1 + b * x) * power / E * growth};
 }
+
+// E and its first derivative at the F of one lane.
+struct FiberStrain {
+  double E = 0;
+  double d[9] = {};  // dE/dF
+  double FH[9] = {}, h[9] = {};
+  double J = 1, a = 1, q = 1;  // of isochoric families: J, J^(-2/3), H : C
+  double g[9] = {};            // dJ/dF
+};
 
 class FiberMaterial final : public Material {
  public:
@@ -56,15 +96,14 @@ class FiberMaterial final : public Material {
   void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
     matrix_->evaluate(want, points, r);
     add(want, points, r);
-    if (want == Want::hessian) add_hessian(points, r);
+    if (want == Want::hessian) add_hessian(Definiteness::exact, points, r);
   }
   void spectrum(const PointBatch& points, const Svd3& svd, Spectrum& out) const override {
     matrix_->spectrum(points, svd, out);
   }
-  // Fibers only pull, and the more the longer: their Hessian is positive semidefinite as it is.
   void add_anisotropic(Definiteness policy, const PointBatch& points, ResponseBatch& r) const override {
     matrix_->add_anisotropic(policy, points, r);
-    add_hessian(points, r);
+    add_hessian(policy, points, r);
   }
 
   std::shared_ptr<const Material> gathered(const Lists& cells,
@@ -88,49 +127,114 @@ class FiberMaterial final : public Material {
   }
 
  private:
-  // FH and E = (F^T F - 1) : H of one lane: H has unit trace, and E is exactly zero at rest.
-  static double strain(const Structure& H, const PointBatch& points, int l, double FH[9]) {
+  static FiberStrain strain(const Family& family, const PointBatch& points, int l) {
+    FiberStrain e;
+    const Structure& H = family.at_element(points.element[l]);
     const double h[9] = {H[0], H[3], H[4], H[3], H[1], H[5], H[4], H[5], H[2]};
-    double E = 0;
+    std::copy_n(h, 9, e.h);
+    // By C - 1: H has unit trace, and E is exactly zero at rest.
     for (int i = 0; i < 3; ++i) {
       for (int j = 0; j < 3; ++j) {
-        FH[3 * i + j] =
+        e.FH[3 * i + j] =
             points.F[3 * i][l] * h[j] + points.F[3 * i + 1][l] * h[3 + j] + points.F[3 * i + 2][l] * h[6 + j];
         const double C = points.F[i][l] * points.F[j][l] + points.F[3 + i][l] * points.F[3 + j][l] +
                          points.F[6 + i][l] * points.F[6 + j][l];
-        E += h[3 * i + j] * (C - (i == j ? 1.0 : 0.0));
+        e.E += h[3 * i + j] * (C - (i == j ? 1.0 : 0.0));
       }
     }
-    return E;
+    if (!family.isochoric) {
+      for (int i = 0; i < 9; ++i) e.d[i] = 2 * e.FH[i];
+      return e;
+    }
+    for (int i = 0; i < 9; ++i) {
+      const int row = i / 3, col = i % 3, r1 = 3 * ((row + 1) % 3), r2 = 3 * ((row + 2) % 3);
+      const int c1 = (col + 1) % 3, c2 = (col + 2) % 3;
+      e.g[i] = points.F[r1 + c1][l] * points.F[r2 + c2][l] - points.F[r1 + c2][l] * points.F[r2 + c1][l];
+    }
+    e.J = points.F[0][l] * e.g[0] + points.F[1][l] * e.g[1] + points.F[2][l] * e.g[2];
+    const double root = std::cbrt(e.J);
+    e.a = 1 / (root * root);
+    e.q = 1 + e.E;
+    e.E = e.a * e.E + (e.a - 1);
+    for (int i = 0; i < 9; ++i) e.d[i] = e.a * (2 * e.FH[i] - 2 * e.q / (3 * e.J) * e.g[i]);
+    return e;
   }
 
   void add(Want want, const PointBatch& points, ResponseBatch& r) const {
     for (const Family& f : families_) {
       for (int l = 0; l < kLanes; ++l) {
-        double FH[9];
-        const FiberResponse e = respond(f, strain(f.at_element(points.element[l]), points, l, FH));
+        const FiberStrain strain_of_lane = strain(f, points, l);
+        const FiberResponse e = strain_of_lane.J > 0 ? respond(f, strain_of_lane.E) : kNone;
         r.psi[l] += e.psi;
         if (want == Want::value) continue;
-        for (int i = 0; i < 9; ++i) r.P[i][l] += 2 * e.first * FH[i];
+        for (int i = 0; i < 9; ++i) r.P[i][l] += e.first * strain_of_lane.d[i];
       }
     }
   }
 
-  void add_hessian(const PointBatch& points, ResponseBatch& r) const {
+  // f'' dE dE^T + f' d2E of one lane, lower triangle packed.
+  static void hessian(const Family& f, const FiberStrain& s, const FiberResponse& e, const PointBatch& points,
+                      int l, double A[45]) {
+    int k = 0;
+    for (int i = 0; i < 9; ++i) {
+      for (int j = 0; j <= i; ++j, ++k) {
+        double second = i / 3 == j / 3 ? 2 * s.h[3 * (i % 3) + j % 3] : 0.0;
+        if (f.isochoric) {
+          second -= 4 / (3 * s.J) * (s.FH[i] * s.g[j] + s.g[i] * s.FH[j]);
+          second += 10 * s.q / (9 * s.J * s.J) * s.g[i] * s.g[j];
+          const int row = i / 3, col = i % 3, row2 = j / 3, col2 = j % 3;
+          if (row != row2 && col != col2) {
+            const bool even = ((row + 1) % 3 == row2) == ((col + 1) % 3 == col2);
+            const double F = points.F[3 * (3 - row - row2) + (3 - col - col2)][l];
+            second -= 2 * s.q / (3 * s.J) * (even ? F : -F);
+          }
+          second *= s.a;
+        }
+        A[k] = e.second * s.d[i] * s.d[j] + e.first * second;
+      }
+    }
+  }
+
+  // Of the whole F: semidefinite as it is where f'' >= 0.
+  static void add_full(const FiberStrain& s, const FiberResponse& e, int l, ResponseBatch& r) {
+    int k = 0;
+    for (int i = 0; i < 9; ++i) {
+      for (int j = 0; j <= i; ++j, ++k) {
+        r.A[k][l] += 4 * e.second * s.FH[i] * s.FH[j];
+        if (i / 3 == j / 3) r.A[k][l] += 2 * e.first * s.h[3 * (i % 3) + j % 3];
+      }
+    }
+  }
+
+  static void make_definite(Definiteness policy, double A[45]) {
+    Eigen::Matrix<double, 9, 9> full;
+    for (int i = 0, k = 0; i < 9; ++i) {
+      for (int j = 0; j <= i; ++j, ++k) full(i, j) = full(j, i) = A[k];
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(full);
+    Eigen::Matrix<double, 9, 1> values = eigen.eigenvalues();
+    for (double& v : values) v = v < 0 ? (policy == Definiteness::absolute ? -v : 0) : v;
+    full = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+    for (int i = 0, k = 0; i < 9; ++i) {
+      for (int j = 0; j <= i; ++j, ++k) A[k] = full(i, j);
+    }
+  }
+
+  void add_hessian(Definiteness policy, const PointBatch& points, ResponseBatch& r) const {
     for (const Family& f : families_) {
       for (int l = 0; l < kLanes; ++l) {
-        const Structure& H = f.at_element(points.element[l]);
-        double FH[9];
-        const FiberResponse e = respond(f, strain(H, points, l, FH));
+        const FiberStrain s = strain(f, points, l);
+        if (!(s.J > 0)) continue;
+        const FiberResponse e = respond(f, s.E);
         if (e.first == 0) continue;
-        const double h[9] = {H[0], H[3], H[4], H[3], H[1], H[5], H[4], H[5], H[2]};
-        int k = 0;
-        for (int i = 0; i < 9; ++i) {
-          for (int j = 0; j <= i; ++j, ++k) {
-            r.A[k][l] += 4 * e.second * FH[i] * FH[j];
-            if (i / 3 == j / 3) r.A[k][l] += 2 * e.first * h[3 * (i % 3) + j % 3];
-          }
+        if (!f.isochoric && (policy == Definiteness::exact || e.second >= 0)) {
+          add_full(s, e, l, r);
+          continue;
         }
+        double A[45];
+        hessian(f, s, e, points, l, A);
+        if (policy != Definiteness::exact) make_definite(policy, A);
+        for (int k = 0; k < 45; ++k) r.A[k][l] += A[k];
       }
     }
   }
@@ -161,7 +265,13 @@ class FiberModel final : public MaterialModel {
   double inverse_bulk() const override { return matrix_->inverse_bulk(); }
   double poisson() const override { return matrix_->poisson(); }
   double young() const override { return matrix_->young(); }
-  bool defined_inverted() const override { return matrix_->defined_inverted(); }
+  bool defined_inverted() const override {
+    return matrix_->defined_inverted() &&
+           std::none_of(families_.begin(), families_.end(), [](const Family& f) { return f.isochoric; });
+  }
+  VolumeStrain volume_strain() const override { return matrix_->volume_strain(); }
+  std::vector<std::string> warnings() const override { return matrix_->warnings(); }
+  bool has_separate_volume() const override { return matrix_->has_separate_volume(); }
   std::size_t field_cells() const override { return cells_ > 0 ? cells_ : matrix_->field_cells(); }
   double stiffness_factor(Index cell) const override { return matrix_->stiffness_factor(cell); }
   double inverse_bulk_of(Index cell) const override { return matrix_->inverse_bulk_of(cell); }
@@ -186,6 +296,33 @@ Result<void> check_direction(const std::string& who, const Vec3& a) {
   return Error{who + " = " + text(a) + " has no direction; give three numbers that are not all zero"};
 }
 
+Result<void> check_law(const std::string& who, const FiberFamily& f) {
+  if (f.law == FiberLaw::exponential) {
+    if (!(f.exponent > 1) || !std::isfinite(f.exponent)) {
+      return Error{who + "exponent = " + number(f.exponent) +
+                   "; it must be above 1, or fibers would pull with a jump (2 is usual)"};
+    }
+    if (f.straight_modulus != 0 || f.straight_stretch != 0) {
+      return Error{who + "straight_modulus = " + number(f.straight_modulus) + " Pa, straight_stretch = " +
+                   number(f.straight_stretch) + ": these are of the toe law; drop them or take that law"};
+    }
+    return {};
+  }
+  if (f.exponent != 2 || f.dispersion != 0) {
+    return Error{who + "exponent = " + number(f.exponent) + ", dispersion = " + number(f.dispersion) +
+                 ": these are of the exponential law; drop them or take that law"};
+  }
+  if (!(f.k2 > 0)) return Error{who + "k2 = " + number(f.k2) + "; it must be positive for the toe law"};
+  if (!(f.straight_modulus >= 0) || !std::isfinite(f.straight_modulus)) {
+    return Error{who + "straight_modulus = " + number(f.straight_modulus) + " Pa; it must not be negative"};
+  }
+  if (!(f.straight_stretch > 1) || !std::isfinite(f.straight_stretch)) {
+    return Error{who + "straight_stretch = " + number(f.straight_stretch) +
+                 "; the stretch at which fibers are straight must be above 1"};
+  }
+  return {};
+}
+
 Result<void> check(const std::string& who, const FiberFamily& f) {
   if (!(f.k1 > 0) || !std::isfinite(f.k1)) {
     return Error{who + "k1 = " + number(f.k1) + " Pa; the stiffness of fibers must be positive"};
@@ -197,6 +334,7 @@ Result<void> check(const std::string& who, const FiberFamily& f) {
     return Error{who + "dispersion = " + number(f.dispersion) +
                  "; it must lie between 0 (all fibers parallel) and 1/3 (no direction at all)"};
   }
+  if (auto r = check_law(who, f); !r) return r;
   if (f.directions.empty()) return check_direction(who + "direction", f.direction);
   for (std::size_t c = 0; c < f.directions.size(); ++c) {
     if (auto r = check_direction(who + "directions[" + std::to_string(c) + "]", f.directions[c]); !r)
@@ -216,7 +354,7 @@ Result<MaterialPtr> with_fibers(MaterialPtr matrix, const std::vector<FiberFamil
     const FiberFamily& f = families[i];
     const std::string who = "fibers[" + std::to_string(i) + "]: ";
     if (auto r = check(who, f); !r) return Error{r.error()};
-    Family family{f.k1, f.k2, {}};
+    Family family{f.k1, f.k2, f.law, f.exponent, f.isochoric, f.straight_modulus, f.straight_stretch, {}};
     for (const Vec3& a : f.directions) family.H.push_back(structure(a, f.dispersion));
     if (f.directions.empty()) family.H.push_back(structure(f.direction, f.dispersion));
     if (f.directions.size() == 1) family.H.push_back(family.H[0]);  // a field, of a mesh of one cell

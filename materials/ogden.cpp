@@ -1,11 +1,10 @@
-// psi = sum_p mu_p/alpha_p (sum_i sigma_i^alpha_p - 3) - (sum_p mu_p) log J + lambda/2 log^2 J [Pa]: Ogden
-// 1972 in the coupled compressible form.
+// W = sum_p mu_p/alpha_p (sum_i s_i^alpha_p - 3) [Pa] over principal stretches (Ogden 1972): those of F with
+// a term in J that balances the stress at rest, or those of J^(-1/3) F; each with a volume part U(J).
 #include <cmath>
 #include <limits>
 
 #include "engine/base/text.h"
-#include "materials/native_constants.h"
-#include "materials/stretch_batch.h"
+#include "materials/strain_law.h"
 
 namespace isochor {
 
@@ -14,81 +13,159 @@ namespace {
 // Powers of smaller stretches leave the range of numbers; no material gets there.
 constexpr double kLeastStretch = 1e-30;
 
-struct OgdenEnergy {
+struct OgdenLaw {
   std::vector<OgdenTerm> terms;
-  double lambda = 0;  // [Pa]
-  double sum = 0;     // of mu_p [Pa]
+  bool isochoric = false;
+  VolumeTerms volume;
+};
 
-  StretchResponse operator()(Want want, const double s[3]) const {
-    StretchResponse r;
-    if (!(s[2] > kLeastStretch)) {
-      r.psi = std::numeric_limits<double>::infinity();
-      return r;
-    }
-    const double log_s[3] = {std::log(s[0]), std::log(s[1]), std::log(s[2])};
-    const double log_J = log_s[0] + log_s[1] + log_s[2];
-    for (const OgdenTerm& t : terms) add_term(t, want, s, log_s, r);
-    const double q = lambda * log_J - sum;
-    r.psi += log_J * (0.5 * lambda * log_J - sum);
+// Derivatives over the principal stretches, see Spectrum; d: Psi_i.
+struct StretchLanes {
+  Lanes psi{}, d[3]{};
+  Spectrum second{};
+};
+
+StretchLanes respond(const OgdenLaw& law, Want want, const Lanes s[3]) {
+  StretchLanes r;
+  Lanes log_s[3], inverse[3], log_J = {};
+  for (int i = 0; i < 3; ++i) {
+    log_s[i] = log(s[i]);
+    inverse[i] = 1 / s[i];
+    log_J += log_s[i];
+  }
+  const Lanes mean = law.isochoric ? log_J * (1.0 / 3) : Lanes{};
+  // m_i = s_i dW/ds_i and n_i = s_i dm_i/ds_i of the strain part alone.
+  Lanes m[3] = {}, n[3] = {};
+  for (const OgdenTerm& t : law.terms) {
+    Lanes power[3];
     for (int i = 0; i < 3; ++i) {
-      const double sj = s[(i + 1) % 3], sk = s[(i + 2) % 3];
-      r.d[i] += q / s[i];
-      r.dd[i] += (lambda - q) / (s[i] * s[i]);
-      r.twist[i] += q / (sj * sk);
-      r.flip[i] -= q / (sj * sk);
-      for (int j = i + 1; j < 3; ++j) r.dd[off_diagonal(i, j)] += lambda / (s[i] * s[j]);
+      const Lanes growth = expm1(t.alpha * (log_s[i] - mean));
+      r.psi += t.mu / t.alpha * growth;
+      power[i] = t.mu * (growth + 1);
+      m[i] += power[i];
+      n[i] += t.alpha * power[i];
     }
-    return r;
+    if (want != Want::hessian) continue;
+    for (int i = 0; i < 3; ++i) {
+      const int j = i == 0 ? 1 : 0, k = 3 - i - j;  // s_k <= s_j: the stretches come in order
+      // (s_j^a - s_k^a)/(s_j - s_k), a = alpha - 1, by the relative difference: exact where the two coincide.
+      const double a = t.alpha - 1;
+      const Lanes x = (s[j] - s[k]) * inverse[k], quotient = expm1(a * log1p(x)) / x;
+      r.second.flip[i] += power[k] * inverse[k] * inverse[k] * (x > 0 ? quotient : broadcast(a));
+    }
+  }
+  // With the part of J^(-1/3): t_i = Psi_i s_i and its derivatives h.
+  const Lanes q = law.isochoric ? (m[0] + m[1] + m[2]) * (-1.0 / 3) : Lanes{};
+  Lanes t[3];
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    t[i] = law.isochoric ? (2 * m[i] - m[j] - m[k]) * (1.0 / 3) : m[i];
+    r.d[i] = t[i] * inverse[i];
+  }
+  StrainResponse u;
+  const Lanes J = s[0] * s[1] * s[2], g[3] = {s[1] * s[2], s[2] * s[0], s[0] * s[1]};
+  law.volume.add(J, log_J, u);
+  r.psi += u.psi;
+  const Lanes all = law.isochoric ? (n[0] + n[1] + n[2]) * (1.0 / 9) : Lanes{};
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3, pair = 2 + j + k;
+    r.d[i] += u.J * g[i];
+    if (want != Want::hessian) continue;
+    const Lanes jk = inverse[j] * inverse[k];
+    Lanes own = n[i] - t[i], mixed = {};
+    if (law.isochoric) own += all - n[i] * (2.0 / 3), mixed = all - (n[j] + n[k]) * (1.0 / 3);
+    r.second.scaling[i] = own * inverse[i] * inverse[i] + u.J_J * g[i] * g[i];
+    r.second.scaling[pair] = mixed * jk + u.J_J * g[j] * g[k] + u.J * s[i];
+    r.second.twist[i] = (m[j] * inverse[j] + m[k] * inverse[k]) / (s[j] + s[k]) + q * jk + u.J * s[i];
+    r.second.flip[i] += -q * jk - u.J * s[i];
+  }
+  const LaneMask none = (s[2] <= kLeastStretch) | ~(magnitude(r.psi) <= std::numeric_limits<double>::max());
+  if (!any(none)) return r;
+  r.psi = none ? broadcast(std::numeric_limits<double>::infinity()) : r.psi;
+  for (int i = 0; i < 3; ++i) {
+    for (Lanes* v :
+         {&r.d[i], &r.second.twist[i], &r.second.flip[i], &r.second.scaling[i], &r.second.scaling[3 + i]}) {
+      *v = none ? Lanes{} : *v;
+    }
+  }
+  return r;
+}
+
+class OgdenMaterial final : public Material {
+ public:
+  OgdenMaterial(std::string_view name, OgdenLaw law) : name_(name), law_(std::move(law)) {}
+  std::string_view name() const override { return name_; }
+  void describe(Fingerprint& f) const override { f.add(name_, law_); }
+
+  void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
+    Lanes F[9];
+    for (int i = 0; i < 9; ++i) F[i] = load(points.F[i]);
+    Svd3 svd;
+    svd3(F, svd);
+    const StretchLanes e = respond(law_, want, svd.sigma);
+    store(e.psi, r.psi);
+    if (want == Want::value) return;
+    for (int i = 0; i < 3; ++i) {
+      const Lanes u[3] = {svd.U[3 * i] * e.d[0], svd.U[3 * i + 1] * e.d[1], svd.U[3 * i + 2] * e.d[2]};
+      for (int j = 0; j < 3; ++j) {
+        store(u[0] * svd.V[3 * j] + u[1] * svd.V[3 * j + 1] + u[2] * svd.V[3 * j + 2], r.P[3 * i + j]);
+      }
+    }
+    if (want == Want::gradient) return;
+    Lanes A[45];
+    assemble(svd, e.second, A);
+    for (int i = 0; i < 45; ++i) store(A[i], r.A[i]);
+  }
+  void spectrum(const PointBatch&, const Svd3& svd, Spectrum& out) const override {
+    out = respond(law_, Want::hessian, svd.sigma).second;
   }
 
  private:
-  static void add_term(const OgdenTerm& t, Want want, const double s[3], const double log_s[3],
-                       StretchResponse& r) {
-    double power[3];  // sigma^(alpha - 1)
-    for (int i = 0; i < 3; ++i) {
-      power[i] = std::exp((t.alpha - 1) * log_s[i]);
-      r.psi += t.mu / t.alpha * std::expm1(t.alpha * log_s[i]);
-      r.d[i] += t.mu * power[i];
-    }
-    if (want != Want::hessian) return;
-    for (int i = 0; i < 3; ++i) {
-      const int j = i == 0 ? 1 : 0, k = 3 - i - j;  // s_k <= s_j: the stretches come in order
-      r.dd[i] += t.mu * (t.alpha - 1) * power[i] / s[i];
-      r.twist[i] += t.mu * (power[j] + power[k]) / (s[j] + s[k]);
-      // (s_j^m - s_k^m) / (s_j - s_k) by the relative difference, exact where the two coincide.
-      const double m = t.alpha - 1, d = (s[j] - s[k]) / s[k];
-      const double quotient = d == 0 ? m : std::expm1(m * std::log1p(d)) / d;
-      r.flip[i] += t.mu * power[k] / s[k] * quotient;
-    }
-  }
+  std::string_view name_;
+  OgdenLaw law_;
 };
 
-}  // namespace
-
-Result<MaterialPtr> ogden(const OgdenConstants& c) {
-  constexpr std::string_view name = "ogden";
-  if (c.terms.empty()) return Error{"ogden: there are no terms; give at least one pair of mu and alpha"};
+Result<MaterialPtr> make(std::string_view name, const OgdenConstants& c, bool isochoric) {
+  if (c.terms.empty())
+    return Error{std::string(name) + ": there are no terms; give at least one pair of mu and alpha"};
   double twice_mu = 0, sum = 0;
+  bool in_question = false;
   for (std::size_t p = 0; p < c.terms.size(); ++p) {
     const double product = c.terms[p].mu * c.terms[p].alpha;
-    if (!(product > 0) || !std::isfinite(product)) {
-      return Error{"ogden: term " + std::to_string(p + 1) + " has mu = " + number(c.terms[p].mu) +
-                   " Pa and alpha = " + number(c.terms[p].alpha) +
-                   "; their product must be positive, or the stress would fall with the stretch"};
+    if (product == 0 || !std::isfinite(product)) {
+      return Error{std::string(name) + ": term " + std::to_string(p + 1) +
+                   " has mu = " + number(c.terms[p].mu) + " Pa and alpha = " + number(c.terms[p].alpha) +
+                   "; both must be finite and not zero, or the term has no stress"};
     }
+    in_question = in_question || product < 0;
     twice_mu += product;
     sum += c.terms[p].mu;
   }
-  auto e = small_strain(name, "sum of mu alpha / 2", twice_mu / 2, c.poisson, 0);
-  if (!e) return Error{e.error()};
-  auto inverse = inverse_kappa(name, e.value(), 0);
-  if (!inverse) return Error{inverse.error()};
-  const auto energy = [&](double lambda) {
-    return std::make_shared<StretchMaterial<OgdenEnergy>>(name, OgdenEnergy{c.terms, lambda, sum});
+  const double mu = twice_mu / 2;
+  const bool quadratic = c.volume.energy == VolumeEnergy::quadratic;
+  const double of_strain = isochoric ? -2 * mu / 3 : (quadratic ? -sum : 0);
+  auto small = small_strain_of({name, "sum of mu alpha / 2", c.poisson, c.volume, isochoric}, mu, of_strain);
+  if (!small) return Error{small.error()};
+  const double inverse = small.value().inverse_kappa;
+  const auto energy = [&](double kappa) -> std::shared_ptr<const Material> {
+    return std::make_shared<OgdenMaterial>(
+        name, OgdenLaw{c.terms, isochoric, {c.volume.energy, kappa, isochoric ? 0 : sum}});
   };
-  EnergyModel m{name, e.value(), inverse.value(), energy(0), nullptr, false};
-  if (!e.value().incompressible()) m.complete = energy(kappa_of(inverse.value()));
+  EnergyModel m{name, small.value().elastic, inverse, energy(0), nullptr, false};
+  if (inverse != 0) m.complete = energy(kappa_of(inverse));
+  m.strain = strain_of(c.volume.energy);
+  if (in_question) m.warnings = stability_warnings(name, *m.distortional);
   return make_model(std::move(m));
+}
+
+}  // namespace
+
+Result<MaterialPtr> ogden(const OgdenConstants& constants) {
+  return make("ogden", constants, false);
+}
+
+Result<MaterialPtr> isochoric_ogden(const OgdenConstants& constants) {
+  return make("isochoric_ogden", constants, true);
 }
 
 }  // namespace isochor

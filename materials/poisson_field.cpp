@@ -139,6 +139,8 @@ class PoissonFieldModel final : public MaterialModel {
   double poisson() const override { return members_.front()->poisson(); }
   double young() const override { return members_.front()->young(); }
   bool defined_inverted() const override { return members_.front()->defined_inverted(); }
+  VolumeStrain volume_strain() const override { return members_.front()->volume_strain(); }
+  std::vector<std::string> warnings() const override { return members_.front()->warnings(); }
   std::size_t field_cells() const override { return member_of_.size(); }
   double stiffness_factor(Index cell) const override {
     return member(cell).shear_modulus() / shear_modulus();
@@ -186,6 +188,11 @@ Result<MaterialPtr> with_poisson_field(const std::function<Result<MaterialPtr>(d
       return Error{who +
                    "the law has a field of its own; put the field of Poisson's ratio on the law without "
                    "fields and the others on top"};
+    }
+    if (!material.value()->has_separate_volume()) {
+      return Error{who + "the energy of the law " + std::string(material.value()->name()) +
+                   " is no sum of a part without Poisson's ratio and a volume part; give each ratio a region "
+                   "of its own"};
     }
     if (std::isinf(material.value()->inverse_bulk())) {
       return Error{who + "nu = " + number(poisson[c]) +

@@ -79,6 +79,9 @@ class ScaledModel final : public MaterialModel {
   double poisson() const override { return base_->poisson(); }
   double young() const override { return base_->young(); }
   bool defined_inverted() const override { return base_->defined_inverted(); }
+  VolumeStrain volume_strain() const override { return base_->volume_strain(); }
+  std::vector<std::string> warnings() const override { return base_->warnings(); }
+  bool has_separate_volume() const override { return base_->has_separate_volume(); }
   std::size_t field_cells() const override { return factor_.size(); }
   double stiffness_factor(Index cell) const override {
     return base_->stiffness_factor(cell) * factor_[at(cell)];

@@ -65,7 +65,7 @@ Result<MadeBody> make_body(const SceneBody& body, const std::string& folder, con
   def.mesh = std::move(mesh).value();
   if (auto r = name_places(body, folder, def.mesh); !r) return Error{where + "." + r.error()};
   for (std::size_t m = 0; m < body.materials.size(); ++m) {
-    auto material = make_material(body.materials[m], folder);
+    auto material = make_material(body.materials[m], folder, &def.mesh);
     if (!material) return Error{where + "." + place("materials", m) + ": " + material.error()};
     def.materials.push_back(
         {body.materials[m].region, std::move(material).value(), body.materials[m].density});

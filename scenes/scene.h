@@ -34,18 +34,47 @@ enum class MaterialLaw : std::uint8_t {
   mooney_rivlin,
   fung,
   arruda_boyce,
-  ogden
+  ogden,
+  yeoh,
+  gent,
+  veronda_westmann,
+  holmes_mow,
+  isochoric_mooney_rivlin,
+  isochoric_fung,
+  isochoric_arruda_boyce,
+  isochoric_ogden,
+  isochoric_yeoh,
+  isochoric_gent,
+  isochoric_veronda_westmann,
+  isochoric_holmes_mow,
+  named
 };
+
+// VolumeEnergy of a law, or what its function takes by itself.
+enum class VolumeEnergyWord : std::uint8_t { by_law, quadratic, logarithmic, mixed };
 
 // Constants of single laws; each is refused beside a law that does not know it. The functions of
 // isochor/materials.h say what they are.
 struct LawConstants {
-  double c1 = 0, c2 = 0;               // mooney_rivlin [Pa]
+  double c1 = 0, c2 = 0;               // mooney_rivlin [Pa], veronda_westmann [Pa, -]
+  double c20 = 0, c11 = 0, c02 = 0;    // mooney_rivlin [Pa]
   double mu0 = 0, mu1 = 0, gamma = 0;  // fung [Pa, -, Pa]
   double beta1 = 0, beta2 = 0;         // arruda_boyce [-]
-  std::vector<OgdenTerm> terms;        // ogden
-  double resistance = 0;               // stvk_resistant [Pa]
-  double threshold = 0.1;              // isochoric_extended [-]
+  double beta3 = 0, beta4 = 0, locking_stretch = 0;
+  std::vector<OgdenTerm> terms;  // ogden
+  std::vector<double> c;         // yeoh [Pa]
+  double jm = 0;                 // gent [-]
+  double beta = 0;               // holmes_mow [-]
+  VolumeEnergyWord volume_energy = VolumeEnergyWord::by_law;
+  std::string name;        // of a named material
+  double resistance = 0;   // stvk_resistant [Pa]
+  double threshold = 0.1;  // isochoric_extended [-]
+};
+
+// Fibers whose directions may be a field of the body's mesh: one with three components in cells, or at nodes,
+// where a cell takes the axis that its nodes agree on best.
+struct SceneFibers : FiberFamily {
+  std::string field;
 };
 
 // Numbers cell by cell, in the order of the cells of the body's mesh: in place or in a text file.
@@ -60,7 +89,7 @@ struct MaterialDef {
   MaterialLaw law = MaterialLaw::neo_hookean;
   ElasticConstants constants;  // of laws with constants of their own, only Poisson's ratio counts
   LawConstants own;
-  std::vector<FiberFamily> fibers;
+  std::vector<SceneFibers> fibers;
   CompressionPenalty compression_penalty;  // as it is made: none
   CellField stiffness_field;               // factors on the stiffness of the material
   CellField poisson_field;                 // Poisson's ratios, in place of the one of `constants`
@@ -244,7 +273,8 @@ struct BuildOptions {
 
 // The material of a definition; messages name the law and the constant. Files of fields are looked for in
 // `folder`.
-Result<MaterialPtr> make_material(const MaterialDef& def, const std::string& folder = "");
+Result<MaterialPtr> make_material(const MaterialDef& def, const std::string& folder = "",
+                                  const Mesh* mesh = nullptr);
 
 // The time scheme that an analysis asks for.
 SchemePtr make_scheme(const AnalysisDef& analysis);

@@ -6,6 +6,7 @@
 
 #include "constraints/volume/volume_zones.h"
 #include "engine/base/text.h"
+#include "engine/elements/volume_strain.h"
 
 namespace isochor {
 
@@ -73,6 +74,11 @@ class VolumeEffect final : public EffectSource {
           who() +
           "lumped_compliance is for compliant rows per node; drop it, or use space node without hard"};
     }
+    if (is_of_mean(def_.strain) && def_.space == VolumeSpace::node) {
+      return Error{who() +
+                   "strain is that of the mean of J over cells, but the rows are those of nodes; take "
+                   "logarithmic or mixed, or another space"};
+    }
     return {};
   }
 
@@ -87,7 +93,7 @@ class VolumeEffect final : public EffectSource {
         continue;
       }
       // Rows over several regions have a pool of their own.
-      if (!def_.across_regions) builder.want_volume(def_.body, r, def_.strain);
+      if (!def_.across_regions) builder.want_volume(def_.body, r, strain_in(def_, material));
       if (def_.carries_bulk && !builder.claim_bulk(def_.body, r)) {
         return Error{who() + "other volume rows already carry the bulk modulus of region \"" +
                      builder.body(def_.body).regions[r].name +
@@ -128,12 +134,14 @@ class VolumeEffect final : public EffectSource {
     std::vector<VolumeRegion> list;
     for (const std::size_t r : regions) {
       const RegionData& region = body.regions[r];
-      const Index pool = region.volume_pool[static_cast<std::size_t>(def_.strain)];
+      const VolumeStrain strain = strain_in(def_, *region.material);
+      const Index pool = region.volume_pool[static_cast<std::size_t>(strain)];
       // Rows of another effect may have asked for the pool; without a bulk modulus these carry nothing.
       if (pool < 0 || (std::isinf(region.material->inverse_bulk()) && !def_.hard)) continue;
       VolumeRegion v;
       v.name = def_.name + (body.regions.size() > 1 ? "/" + region.name : "");
       v.stencil_pool = pool;
+      v.strain = strain;
       v.pool = &builder.solid(pool);
       v.corners = body.reference->corners;
       v.inverse_bulk = def_.hard ? 0 : region.material->inverse_bulk();
@@ -153,7 +161,7 @@ class VolumeEffect final : public EffectSource {
         const auto rows = nodal_volume_rows(region, equal_order ? def_.stabilization : 0, &nodes);
         if (def_.lumped_compliance) lump(*rows);
         const Index pool = add(builder, rows);
-        if (def_.strain == VolumeStrain::linear && def_.carries_bulk) {
+        if (region.strain == VolumeStrain::linear && def_.carries_bulk) {
           instance.nodal.push_back({pool, std::move(nodes)});
         }
         break;

@@ -12,6 +12,7 @@ struct VolumeRegion {
   std::string name;  // for reports
   Index stencil_pool = -1;
   const SolidPool* pool = nullptr;
+  VolumeStrain strain = VolumeStrain::linear;
   int corners = 4;           // the first `corners` nodes of a stencil carry the linear pressure
   double inverse_bulk = 0;   // 1/kappa [1/Pa], of the softest cell; 0: hard rows
   double shear_modulus = 1;  // mu [Pa], for the row metric and the stabilization

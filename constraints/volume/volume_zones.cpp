@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "engine/elements/volume_strain.h"
+
 namespace isochor {
 
 namespace {
@@ -178,33 +180,49 @@ Result<void> check_independent(const VolumeRegion& region, const VolumeZones& zo
 
 }  // namespace
 
+VolumeStrain strain_in(const VolumeDef& def, const MaterialModel& material) {
+  if (def.strain != VolumeStrain::by_law) return def.strain;
+  const VolumeStrain strain = material.volume_strain();
+  if (def.space != VolumeSpace::element || strain == VolumeStrain::linear) return strain;
+  return strain == VolumeStrain::mixed ? VolumeStrain::mean_mixed : VolumeStrain::mean_logarithmic;
+}
+
 Result<VolumeRegion> region_across(Builder& builder, const VolumeDef& def,
                                    std::span<const std::size_t> regions) {
   const BodyData& body = builder.body(def.body);
   std::vector<Index> cells;
   std::vector<const MaterialModel*> material(at(body.mesh.cell_count()), nullptr);
   double shear = 0, volume = 0;
+  VolumeStrain strain = VolumeStrain::by_law;
   for (const std::size_t r : regions) {
     const RegionData& region = body.regions[r];
     if (std::isinf(region.material->inverse_bulk()) && !def.hard) continue;
+    const VolumeStrain own = strain_in(def, *region.material);
+    if (strain != VolumeStrain::by_law && strain != own) {
+      return Error{
+          "the rows go across regions whose laws have different volume parts; say which strain they "
+          "measure (linear, logarithmic, mixed)"};
+    }
+    strain = own;
     for (const Index c : region.cells) material[at(c)] = region.material.get();
     cells.insert(cells.end(), region.cells.begin(), region.cells.end());
   }
   VolumeRegion out;
   if (cells.empty()) return out;
   std::sort(cells.begin(), cells.end());
-  const VolumeFunctions kind =
-      body.reference->points > 1 ? VolumeFunctions::corners : VolumeFunctions::constant;
+  const VolumeFunctions kind = body.reference->points > 1 && !is_of_mean(strain) ? VolumeFunctions::corners
+                                                                                 : VolumeFunctions::constant;
   auto data = solid_data(*body.reference, builder.rest(), body.global_cells, cells, kind);
   if (!data) return Error{data.error()};
   const auto pool = std::make_shared<SolidPool>(body.name + "/" + def.name,
                                                 std::make_shared<const SolidData>(std::move(data).value()),
-                                                nullptr, def.strain);
+                                                nullptr, strain);
   out.name = def.name;
+  out.strain = strain;
   out.stencil_pool = builder.add_stencils(pool);
   out.pool = &builder.solid(out.stencil_pool);
   out.corners = body.reference->corners;
-  SpanningVolume spanning{out.stencil_pool, def.strain, std::vector<Index>(at(body.mesh.cell_count()), -1)};
+  SpanningVolume spanning{out.stencil_pool, strain, std::vector<Index>(at(body.mesh.cell_count()), -1)};
   for (Index s = 0; s < out.pool->stencils(); ++s) {
     const Index c = out.pool->data().cell[at(s)];
     const MaterialModel& m = *material[at(c)];

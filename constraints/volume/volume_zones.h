@@ -7,6 +7,9 @@
 
 namespace isochor {
 
+// What the rows of `def` measure in a material.
+VolumeStrain strain_in(const VolumeDef& def, const MaterialModel& material);
+
 // The regions as one, with a stencil pool of its own that knows where kappa differs. Without a pool where no
 // region has a bulk modulus for rows to carry.
 Result<VolumeRegion> region_across(Builder& builder, const VolumeDef& def,

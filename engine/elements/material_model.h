@@ -3,8 +3,11 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "engine/elements/material.h"
+#include "isochor/choices.h"
 
 namespace isochor {
 
@@ -22,6 +25,13 @@ class MaterialModel {
   virtual double poisson() const = 0;  // small-strain nu
   virtual double young() const = 0;    // small-strain E [Pa]
   virtual bool defined_inverted() const = 0;  // finite energy for J <= 0
+  // The strain whose square over 2 inverse_bulk() is the volume part of the law: linear, logarithmic or
+  // mixed.
+  virtual VolumeStrain volume_strain() const { return VolumeStrain::linear; }
+  // complete() is distortional() and a multiple of a function of J.
+  virtual bool has_separate_volume() const { return true; }
+  // What the world should say about its constants, a sentence each.
+  virtual std::vector<std::string> warnings() const { return {}; }
   // Fields of parameters: how many cells they were given for (those of the body's mesh; 0: none), and by how
   // much a cell is stiffer than the numbers above.
   virtual std::size_t field_cells() const { return 0; }

@@ -38,6 +38,8 @@ class SolidPool final : public StencilPool {
   const SolidData& data() const { return data_; }
   // Rest volume of a stencil [m^3].
   double volume(Index stencil) const;
+  // Mean of J - 1 over it.
+  double mean_volume_strain(Index stencil, std::span<const Vec3> x, std::span<const Vec3> rest) const;
   // F at the points of a stencil.
   void deformation_gradient(Index stencil, int point, std::span<const Vec3> x, std::span<const Vec3> rest,
                             double F[9], double& volume_strain) const;
@@ -49,6 +51,7 @@ class SolidPool final : public StencilPool {
   double strain_multiplier(const StencilRequest& request, const Lane& lane) const;
   void definite_hessian(const StencilRequest& request, const Lane* lanes, int count, const PointBatch& batch,
                         ResponseBatch& response) const;
+  void add_bending_of_mean(const StencilRequest& request, const StencilSlots& slots) const;
   void write(const StencilRequest& request, const StencilSlots& slots, const Lane& lane, double psi,
              const double* P, const double* A) const;
 

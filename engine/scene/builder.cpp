@@ -9,6 +9,7 @@
 #include "engine/base/available_memory.h"
 #include "engine/base/text.h"
 #include "engine/elements/element_guard.h"
+#include "engine/elements/volume_strain.h"
 #include "engine/scene/scene_checks.h"
 #include "engine/scene/supports.h"
 #include "isochor/generate.h"
@@ -400,6 +401,9 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
     if (!complete) return Error{complete.error()};
     energy = complete.value();
   }
+  for (const std::string& warning : region.material->warnings()) {
+    warn("body \"" + body.name + "\", region \"" + region.name + "\": " + warning);
+  }
   const std::size_t fields = region.material->field_cells();
   if (fields > 0 && fields != at(body.mesh.cell_count())) {
     return Error{"its material has a field of " + std::to_string(fields) + " entries, the mesh of the body " +
@@ -425,11 +429,15 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
         body.name + "/" + region.name + "/patches", patches.value(), energy, VolumeStrain::linear));
     energy = element_guard(body, region);
   }
-  for (std::size_t strain = 0; strain < 2; ++strain) {
-    const bool wanted = region.volume_wanted[strain];
-    const bool needed = strain == 0 && energy && !region.volume_wanted[0] && !region.volume_wanted[1];
+  const auto& asked = region.volume_wanted;
+  const bool none = std::find(asked.begin(), asked.end(), true) == asked.end();
+  for (std::size_t strain = 0; strain < kVolumeStrains; ++strain) {
+    const bool wanted = asked[strain];
+    const bool needed = strain == 0 && energy && none;
     if (!wanted && !needed) continue;
-    auto data = cells_of(body, region, wanted ? kind : VolumeFunctions::none);
+    const bool mean = is_of_mean(static_cast<VolumeStrain>(strain));
+    auto data =
+        cells_of(body, region, !wanted ? VolumeFunctions::none : (mean ? VolumeFunctions::constant : kind));
     if (!data) return Error{data.error()};
     if (energy && !smoothed) region.energy = energy = for_stencils(energy, *region.material, *data.value());
     const Index pool = add_stencils(std::make_shared<SolidPool>(body.name + "/" + region.name, data.value(),

@@ -1,6 +1,7 @@
 // What an effect sees while a scene is compiled, and what it must provide. Extension header.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -142,6 +143,8 @@ struct RegionStencils {
   std::array<std::shared_ptr<const SolidData>, 3> cells;  // by VolumeFunctions
 };
 
+inline constexpr std::size_t kVolumeStrains = static_cast<std::size_t>(VolumeStrain::by_law);
+
 struct RegionData {
   std::string name;
   MaterialPtr material;
@@ -151,8 +154,11 @@ struct RegionData {
   // Pools that were built for it.
   std::shared_ptr<const Material> energy;  // of elastic_pool
   Index elastic_pool = -1;
-  std::array<Index, 2> volume_pool{-1, -1};  // by VolumeStrain
-  std::array<bool, 2> volume_wanted{};
+  std::array<Index, kVolumeStrains> volume_pool{-1, -1, -1, -1, -1};  // by VolumeStrain
+  std::array<bool, kVolumeStrains> volume_wanted{};
+  bool has_volume_pool(Index pool) const {
+    return std::find(volume_pool.begin(), volume_pool.end(), pool) != volume_pool.end();
+  }
   RegionStencils stencils;
   std::vector<std::uint8_t> guarded;  // by cell: 1 where the element guard acts; empty: nowhere
 };
@@ -230,7 +236,7 @@ class ISOCHOR_API Builder {
   std::span<const Vec3> rest() const { return parts_.rest; }
   double length() const;  // diagonal of the scene's box [m]
 
-  // Declarations about a region (index into body.regions).
+  // Declarations about a region (index into body.regions). `strain` is not by_law.
   void want_volume(BodyId id, std::size_t region, VolumeStrain strain) {
     bodies_[static_cast<std::size_t>(id)].regions[region].volume_wanted[static_cast<std::size_t>(strain)] =
         true;

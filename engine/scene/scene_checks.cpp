@@ -303,8 +303,7 @@ class FunctionNumbers {
       const BodyData& body = facts_.bodies[b];
       if (!body.present()) continue;
       for (const RegionData& r : body.regions) {
-        if (r.volume_pool[0] == pool || r.volume_pool[1] == pool)
-          return of_cell(b, r.cells[at(item / functions)], item % functions);
+        if (r.has_volume_pool(pool)) return of_cell(b, r.cells[at(item / functions)], item % functions);
       }
       for (const SpanningVolume& v : body.spanning) {
         if (v.pool != pool) continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/text.h"
+#include "engine/elements/volume_strain.h"
 
 namespace isochor {
 
@@ -29,13 +30,14 @@ bool lives_through_inversion(const Material& energy, Index element) {
   return std::isfinite(response.psi[0]);
 }
 
-// Rows over log J have no value below zero.
+// Rows over a logarithm of J have no value below zero.
 bool has_logarithmic_rows(const BodyData& body, const RegionData& region) {
-  if (region.volume_pool[static_cast<std::size_t>(VolumeStrain::logarithmic)] >= 0) return true;
+  for (std::size_t strain = 0; strain < kVolumeStrains; ++strain) {
+    if (has_logarithm(static_cast<VolumeStrain>(strain)) && region.volume_pool[strain] >= 0) return true;
+  }
   return std::any_of(body.spanning.begin(), body.spanning.end(), [&](const SpanningVolume& v) {
-    return v.strain == VolumeStrain::logarithmic &&
-           std::any_of(region.cells.begin(), region.cells.end(),
-                       [&](Index c) { return v.stencil_of_cell[at(c)] >= 0; });
+    return has_logarithm(v.strain) && std::any_of(region.cells.begin(), region.cells.end(),
+                                                  [&](Index c) { return v.stencil_of_cell[at(c)] >= 0; });
   });
 }
 

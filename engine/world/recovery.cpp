@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "engine/elements/volume_strain.h"
 #include "engine/mesh/cell_shape.h"
 #include "engine/world/node_fit.h"
 
@@ -111,20 +112,26 @@ double multiplier_at(const RecoveryInput& in, Index pool, Index stencil, int q) 
   return sum;
 }
 
-// Mean pressure of the volume rows over a point, divided by J for the logarithmic strain.
+// The pressure that the multiplier of a strain makes at a point with volume ratio J.
+double pressure_of(const RecoveryInput& in, Index pool, VolumeStrain strain, Index stencil, int q, double J) {
+  const double multiplier = multiplier_at(in, pool, stencil, q);
+  if (!has_logarithm(strain)) return multiplier;
+  const auto& solid = static_cast<const SolidPool&>(*in.parts.stencil_pools[at(pool)]);
+  if (strain == VolumeStrain::logarithmic) return multiplier / J;
+  const double d = is_of_mean(strain) ? solid.mean_volume_strain(stencil, in.x, in.parts.rest) : J - 1;
+  return multiplier * volume_response(strain, d).first;
+}
+
+// Mean pressure of the volume rows over a point.
 double row_pressure(const RecoveryInput& in, const RegionData& region, Index local, int q, double J) {
   double p = 0;
-  for (std::size_t strain = 0; strain < 2; ++strain) {
+  for (std::size_t strain = 0; strain < kVolumeStrains; ++strain) {
     const Index pool = region.volume_pool[strain];
-    if (pool < 0) continue;
-    const double sum = multiplier_at(in, pool, local, q);
-    p += strain == 0 ? sum : sum / J;
+    if (pool >= 0) p += pressure_of(in, pool, static_cast<VolumeStrain>(strain), local, q, J);
   }
   for (const SpanningVolume& v : in.body.spanning) {
     const Index stencil = v.stencil_of_cell[at(region.cells[at(local)])];
-    if (stencil < 0) continue;
-    const double sum = multiplier_at(in, v.pool, stencil, q);
-    p += v.strain == VolumeStrain::linear ? sum : sum / J;
+    if (stencil >= 0) p += pressure_of(in, v.pool, v.strain, stencil, q, J);
   }
   return p;
 }

@@ -33,11 +33,10 @@ BodyMeasures World::measures(BodyId body) const {
   const std::vector<double> theta = w.row_residuals();
   const auto& pools = w.system().parts().row_pools;
   for (std::size_t p = 0; p < pools.size(); ++p) {
-    const bool of_body =
-        pools[p]->law == RowLaw::compliant &&
-        std::any_of(b.regions.begin(), b.regions.end(), [&](const RegionData& r) {
-          return r.volume_pool[0] == pools[p]->stencil_pool || r.volume_pool[1] == pools[p]->stencil_pool;
-        });
+    const bool of_body = pools[p]->law == RowLaw::compliant &&
+                         std::any_of(b.regions.begin(), b.regions.end(), [&](const RegionData& r) {
+                           return r.has_volume_pool(pools[p]->stencil_pool);
+                         });
     const bool spanning = pools[p]->law == RowLaw::compliant &&
                           std::any_of(b.spanning.begin(), b.spanning.end(), [&](const SpanningVolume& v) {
                             return v.pool == pools[p]->stencil_pool;

@@ -21,6 +21,14 @@ enum class Solver : std::uint8_t {
 enum class VolumeStrain : std::uint8_t {
   linear,       // J - 1
   logarithmic,  // log J; its multiplier is J times the pressure
+  mixed,        // of the sign of J - 1, its square (J^2 - 1 - 2 log J)/2
+  // The same of the mean of J over a cell, which is what three-field elements of other codes take; the two
+  // differ where J varies within a cell. Not for rows at nodes.
+  mean_logarithmic,
+  mean_mixed,
+  // The one whose square the law of the material has as U(J), J - 1 where it names none; of the mean for
+  // rows of the space element.
+  by_law,
 };
 
 }  // namespace isochor

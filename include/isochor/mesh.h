@@ -34,11 +34,11 @@ struct MeshNodeSet {
   std::vector<Index> nodes;
 };
 
-// Values at nodes that came with a file (painted weights, for example).
+// Values at nodes, or in cells, that came with a file (painted weights, for example).
 struct MeshField {
   std::string name;
   int components = 1;
-  std::vector<double> values;  // components a node
+  std::vector<double> values;  // components a node or cell
 };
 
 // What a reader changed or left out on the way in; check_mesh passes it on as a finding.
@@ -62,6 +62,7 @@ struct Mesh {
   std::vector<std::int64_t> cell_label;
   std::string source;  // file name, for messages
   std::vector<MeshNote> notes;
+  std::vector<MeshField> cell_fields;  // values in cells (directions of fibers): components a cell
 
   Index node_count() const { return static_cast<Index>(nodes.size()); }
   Index cell_count() const {

@@ -11,7 +11,9 @@ enum class VolumeSpaceWord : std::uint8_t { node, element, body, ring, zone, non
 ISOCHOR_WORDS(VolumeSpaceWord, ISOCHOR_WORD(VolumeSpaceWord, node), ISOCHOR_WORD(VolumeSpaceWord, element),
               ISOCHOR_WORD(VolumeSpaceWord, body), ISOCHOR_WORD(VolumeSpaceWord, ring),
               ISOCHOR_WORD(VolumeSpaceWord, zone), ISOCHOR_WORD(VolumeSpaceWord, none));
-ISOCHOR_WORDS(VolumeStrain, ISOCHOR_WORD(VolumeStrain, linear), ISOCHOR_WORD(VolumeStrain, logarithmic));
+ISOCHOR_WORDS(VolumeStrain, ISOCHOR_WORD(VolumeStrain, by_law), ISOCHOR_WORD(VolumeStrain, linear),
+              ISOCHOR_WORD(VolumeStrain, logarithmic), ISOCHOR_WORD(VolumeStrain, mixed),
+              ISOCHOR_WORD(VolumeStrain, mean_logarithmic), ISOCHOR_WORD(VolumeStrain, mean_mixed));
 ISOCHOR_WORDS(UnpaintedCells, ISOCHOR_WORD(UnpaintedCells, none), ISOCHOR_WORD(UnpaintedCells, nearest));
 ISOCHOR_WORDS(RowTreatment, ISOCHOR_WORD(RowTreatment, automatic), ISOCHOR_WORD(RowTreatment, saddle),
               ISOCHOR_WORD(RowTreatment, condensed), ISOCHOR_WORD(RowTreatment, bordered),
@@ -41,7 +43,8 @@ void describe(Visitor& io, VolumeRows& v) {
           static_cast<VolumeSpaceWord>(d.space));
   v.none = space == VolumeSpaceWord::none;
   if (!v.none) v.def.space = static_cast<VolumeSpace>(space);
-  io.word({"strain", "", "what a row measures: J - 1 or log J"}, v.def.strain, d.strain);
+  io.word({"strain", "", "what a row measures, see [volume](effects/volume.md#strain)"}, v.def.strain,
+          d.strain);
   io.names(Key("regions", "", "that have rows").absent("all"), v.def.regions);
   io.integer(Key("rings", "", "of cells around each node, for space `ring`").least(1), v.def.rings, d.rings);
   io.list({"zones", "", "for space `zone`"}, v.def.zones);

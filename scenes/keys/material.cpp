@@ -11,7 +11,18 @@ ISOCHOR_WORDS(MaterialLaw, ISOCHOR_WORD(MaterialLaw, neo_hookean),
               ISOCHOR_WORD(MaterialLaw, stvk), ISOCHOR_WORD(MaterialLaw, stvk_resistant),
               ISOCHOR_WORD(MaterialLaw, linear), ISOCHOR_WORD(MaterialLaw, mooney_rivlin),
               ISOCHOR_WORD(MaterialLaw, fung), ISOCHOR_WORD(MaterialLaw, arruda_boyce),
-              ISOCHOR_WORD(MaterialLaw, ogden));
+              ISOCHOR_WORD(MaterialLaw, ogden), ISOCHOR_WORD(MaterialLaw, yeoh),
+              ISOCHOR_WORD(MaterialLaw, gent), ISOCHOR_WORD(MaterialLaw, veronda_westmann),
+              ISOCHOR_WORD(MaterialLaw, holmes_mow), ISOCHOR_WORD(MaterialLaw, isochoric_mooney_rivlin),
+              ISOCHOR_WORD(MaterialLaw, isochoric_fung), ISOCHOR_WORD(MaterialLaw, isochoric_arruda_boyce),
+              ISOCHOR_WORD(MaterialLaw, isochoric_ogden), ISOCHOR_WORD(MaterialLaw, isochoric_yeoh),
+              ISOCHOR_WORD(MaterialLaw, isochoric_gent),
+              ISOCHOR_WORD(MaterialLaw, isochoric_veronda_westmann),
+              ISOCHOR_WORD(MaterialLaw, isochoric_holmes_mow), ISOCHOR_WORD(MaterialLaw, named));
+ISOCHOR_WORDS(VolumeEnergyWord, ISOCHOR_WORD(VolumeEnergyWord, by_law),
+              ISOCHOR_WORD(VolumeEnergyWord, quadratic), ISOCHOR_WORD(VolumeEnergyWord, logarithmic),
+              ISOCHOR_WORD(VolumeEnergyWord, mixed));
+ISOCHOR_WORDS(FiberLaw, ISOCHOR_WORD(FiberLaw, exponential), ISOCHOR_WORD(FiberLaw, toe));
 ISOCHOR_WORDS(BulkChoice, ISOCHOR_WORD(BulkChoice, consistent), ISOCHOR_WORD(BulkChoice, bulk_modulus));
 
 void describe(Visitor& io, OgdenTerm& t) {
@@ -22,16 +33,24 @@ void describe(Visitor& io, OgdenTerm& t) {
   io.number({"alpha", "", "exponent"}, t.alpha, d.alpha);
 }
 
-void describe(Visitor& io, FiberFamily& f) {
-  const FiberFamily d;
+void describe(Visitor& io, SceneFibers& f) {
+  const SceneFibers d;
   io.about("fibers",
-           "A family of fibers that only pull, added to the material: k1/(2 k2) (exp(k2 E^2) - 1), see "
-           "[fibers](materials/fibers.md).");
+           "A family of fibers that only pull, added to the material, see [fibers](materials/fibers.md).");
   io.vector({"direction", "", "of all of them, at rest"}, f.direction, d.direction);
   io.points({"directions", "", "one a cell of the mesh, instead of `direction`"}, f.directions);
+  io.text(
+      {"field", "", "of the mesh file, with three components in cells or at nodes, instead of `direction`"},
+      f.field, d.field);
+  io.word({"law", "", "how they pull"}, f.law, d.law);
   io.number(Key("k1", "Pa", "stiffness").above(0).must(), f.k1, d.k1);
   io.number(Key("k2", "", "how soon they stiffen").least(0), f.k2, d.k2);
   io.number(Key("dispersion", "", "0: all alike, 1/3: all directions").least(0), f.dispersion, d.dispersion);
+  io.number(Key("exponent", "", "of the exponential law").above(1), f.exponent, d.exponent);
+  io.flag({"isochoric", "", "strains of the part of F without change of volume"}, f.isochoric, d.isochoric);
+  io.number(Key("straight_modulus", "Pa", "of the toe law").least(0), f.straight_modulus, d.straight_modulus);
+  io.number(Key("straight_stretch", "", "of the toe law: where its line begins").least(0), f.straight_stretch,
+            d.straight_stretch);
 }
 
 void describe(Visitor& io, CompressionPenalty& p) {
@@ -55,14 +74,31 @@ namespace {
 
 void describe_own(Visitor& io, LawConstants& c) {
   const LawConstants d;
-  io.number(Key("c1", "Pa", "of [mooney_rivlin](materials/mooney_rivlin.md)").least(0), c.c1, d.c1);
-  io.number(Key("c2", "Pa", "of mooney_rivlin").least(0), c.c2, d.c2);
+  io.number({"c1", "Pa",
+             "of [mooney_rivlin](materials/mooney_rivlin.md) and "
+             "[veronda_westmann](materials/veronda_westmann.md), with and without `isochoric_`"},
+            c.c1, d.c1);
+  io.number({"c2", "", "of the same: in Pa, and a pure number"}, c.c2, d.c2);
+  io.number({"c20", "Pa", "of mooney_rivlin"}, c.c20, d.c20);
+  io.number({"c11", "Pa", "of mooney_rivlin"}, c.c11, d.c11);
+  io.number({"c02", "Pa", "of mooney_rivlin"}, c.c02, d.c02);
+  io.numbers({"c", "Pa", "of [yeoh](materials/yeoh.md): its coefficients in order"}, c.c);
+  io.number(Key("jm", "", "of [gent](materials/gent.md): I - 3 where chains are straight").least(0), c.jm,
+            d.jm);
+  io.number(Key("beta", "", "of [holmes_mow](materials/holmes_mow.md)").least(0), c.beta, d.beta);
   io.number(Key("mu0", "Pa", "of [fung](materials/stiffening.md)").least(0), c.mu0, d.mu0);
   io.number(Key("mu1", "", "of fung").least(0), c.mu1, d.mu1);
   io.number(Key("gamma", "Pa", "of fung").least(0), c.gamma, d.gamma);
   io.number(Key("beta1", "", "of [arruda_boyce](materials/stiffening.md)").least(0), c.beta1, d.beta1);
   io.number(Key("beta2", "", "of arruda_boyce").least(0), c.beta2, d.beta2);
+  io.number(Key("beta3", "", "of arruda_boyce").least(0), c.beta3, d.beta3);
+  io.number(Key("beta4", "", "of arruda_boyce").least(0), c.beta4, d.beta4);
+  io.number(Key("locking_stretch", "", "of arruda_boyce, in place of the betas").least(0), c.locking_stretch,
+            d.locking_stretch);
   io.list({"terms", "", "of [ogden](materials/ogden.md)"}, c.terms);
+  io.word({"volume_energy", "", "[U(J)](materials/uncoupled.md) of a law with constants of its own"},
+          c.volume_energy, d.volume_energy);
+  io.text({"name", "", "of the law `named`: one of the [library](materials/library.md)"}, c.name, d.name);
   io.number(Key("resistance", "Pa", "of [stvk_resistant](materials/stvk.md)").least(0), c.resistance,
             d.resistance);
   io.number({"threshold", "", "of [isochoric_extended](materials/isochoric.md)"}, c.threshold, d.threshold);

@@ -83,7 +83,7 @@ MaterialDef draw_material(ChaosRandom& random, const ChaosDraft& draft, DraftBod
   if (!own && m.law != MaterialLaw::arruda_boyce && random.chance(0.05))
     m.constants.bulk_choice = BulkChoice::bulk_modulus;
   if (random.chance(0.12)) {
-    FiberFamily fibers;
+    SceneFibers fibers;
     fibers.direction = random.direction();
     fibers.k1 = young * random.decades(-2, 2);
     fibers.k2 = random.pick({0.0, 1.0, 10.0});

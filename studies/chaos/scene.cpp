@@ -28,7 +28,20 @@ constexpr const char* kLaws[] = {"neo_hookean",
                                  "mooney_rivlin",
                                  "fung",
                                  "arruda_boyce",
-                                 "ogden"};
+                                 "ogden",
+                                 "yeoh",
+                                 "gent",
+                                 "veronda_westmann",
+                                 "holmes_mow",
+                                 "isochoric_mooney_rivlin",
+                                 "isochoric_fung",
+                                 "isochoric_arruda_boyce",
+                                 "isochoric_ogden",
+                                 "isochoric_yeoh",
+                                 "isochoric_gent",
+                                 "isochoric_veronda_westmann",
+                                 "isochoric_holmes_mow",
+                                 "named"};
 constexpr const char* kSpaces[] = {"node", "element", "body", "ring", "zone"};
 constexpr const char* kControls[] = {"pressure", "volume", "volume_ratio", "gas", "liquid"};
 constexpr const char* kShapes[] = {"plane", "sphere", "capsule", "cylinder", "box", "mesh", "distance_field"};

@@ -50,7 +50,9 @@ TEST_CASE("tangents at rest give E and nu back") {
       const double carried = std::isinf(m->inverse_bulk()) ? 0 : 1 / m->inverse_bulk();
       CHECK(d.lambda + carried == Approx(lambda).epsilon(1e-12).margin(1e-9 * mu));
       const Lame whole = tangent(*m->complete().value());
-      CHECK(whole.mu == Approx(mu).epsilon(1e-14));
+      // Where lambda_L stands inside the energy its digits are lost to mu.
+      const double lost = m->has_separate_volume() ? 0 : 3e-16 * lambda / mu;
+      CHECK(whole.mu == Approx(mu).epsilon(1e-14 + lost));
       CHECK(whole.lambda == Approx(lambda).epsilon(1e-12).margin(1e-9 * mu));
     }
   }

@@ -229,6 +229,216 @@ void add_native(std::vector<MaterialCase>& out) {
       out);
 }
 
+// Formulas of the strain parts over numbers of any kind, with the modulus at small strain mu.
+using StrainFormula = std::function<HyperDual(const HyperDual& I, const HyperDual& II)>;
+
+HyperDual volume_formula(isochor::VolumeEnergy energy, const HyperDual& J) {
+  switch (energy) {
+    case isochor::VolumeEnergy::quadratic:
+      return 0.5 * square(J - 1.0);
+    case isochor::VolumeEnergy::logarithmic:
+      return 0.5 * square(log(J));
+    default:
+      return 0.25 * (square(J) - 1.0 - 2.0 * log(J));
+  }
+}
+
+// A law with constants {..., VolumePart}: `full` and `isochoric` make its two forms, `w1`, `w2` are dW/dI and
+// dW/dII at rest.
+struct TwoForms {
+  std::string name, covers;
+  std::function<Result<MaterialPtr>(isochor::VolumePart)> full, isochoric;
+  StrainFormula strain;
+  double w1, w2, scale = 4, largest_J = 4;
+};
+
+void add_forms(const TwoForms& law, std::vector<MaterialCase>& out) {
+  constexpr double bulk = 3.1;
+  const char* names[] = {"quadratic", "logarithmic", "mixed"};
+  for (const auto energy :
+       {isochor::VolumeEnergy::quadratic, isochor::VolumeEnergy::logarithmic, isochor::VolumeEnergy::mixed}) {
+    const std::string word = names[static_cast<int>(energy)];
+    for (const bool isochoric : {false, true}) {
+      const auto& make = isochoric ? law.isochoric : law.full;
+      if (!make) continue;
+      const auto model = made(make({energy, bulk}));
+      const double balance = isochoric ? 0 : 2 * law.w1 + 4 * law.w2;
+      const bool quadratic = energy == isochor::VolumeEnergy::quadratic;
+      const auto formula = [=, strain = law.strain](const Gradient9& F, double kappa) {
+        const HyperDual J = determinant(F), I = trace_C(F), II = 0.5 * (I * I - trace_C2(F));
+        const HyperDual shape =
+            isochoric ? strain(pow(J, -2.0 / 3) * I, pow(J, -4.0 / 3) * II) : strain(I, II);
+        const HyperDual rest = balance * (quadratic ? J - 1.0 : log(J));
+        return shape - rest + kappa * volume_formula(energy, J);
+      };
+      const std::size_t first = out.size();
+      add({(isochoric ? "isochoric_" : "") + law.name + ", " + word, law.covers, model, formula, bulk,
+           !isochoric && quadratic},
+          out);
+      for (std::size_t i = first; i < out.size(); ++i) {
+        out[i].scale = law.scale;
+        out[i].largest_J = law.largest_J;
+      }
+    }
+  }
+}
+
+void add_strain_laws(std::vector<MaterialCase>& out) {
+  using isochor::VolumePart;
+  add_forms({"mooney_rivlin, five terms", "materials/mooney_rivlin",
+             [](VolumePart v) {
+               return isochor::mooney_rivlin({0.3, 0.2, 0.5, 0.05, -0.02, 0.01, v});
+             },
+             [](VolumePart v) {
+               return isochor::isochoric_mooney_rivlin({0.3, 0.2, 0.5, 0.05, -0.02, 0.01, v});
+             },
+             [](const HyperDual& I, const HyperDual& II) {
+               const HyperDual x = I - 3.0, y = II - 3.0;
+               return 0.3 * x + 0.2 * y + 0.05 * x * x - 0.02 * x * y + 0.01 * y * y;
+             },
+             0.3, 0.2},
+            out);
+  add_forms({"yeoh, four terms", "materials/yeoh",
+             [](VolumePart v) {
+               return isochor::yeoh({{0.5, -0.03, 0.002, 1e-4}, 0.5, v});
+             },
+             [](VolumePart v) {
+               return isochor::isochoric_yeoh({{0.5, -0.03, 0.002, 1e-4}, 0.5, v});
+             },
+             [](const HyperDual& I, const HyperDual&) {
+               const HyperDual x = I - 3.0;
+               return 0.5 * x - 0.03 * x * x + 0.002 * x * x * x + 1e-4 * x * x * x * x;
+             },
+             0.5, 0},
+            out);
+  add_forms({"fung", "materials/fung",
+             [](VolumePart v) {
+               return isochor::fung({0.4, 0.3, 1.5, 0.5, v});
+             },
+             [](VolumePart v) {
+               return isochor::isochoric_fung({0.4, 0.3, 1.5, 0.5, v});
+             },
+             [](const HyperDual& I, const HyperDual&) {
+               return 0.2 * (I - 3.0) + 0.75 * (exp(0.3 * (I - 3.0)) - 1.0);
+             },
+             0.425, 0},
+            out);
+  // Coefficients as Arruda & Boyce print them, of chains of eight links.
+  const auto chains = [](const HyperDual& I, const HyperDual&) {
+    constexpr double C[] = {1.0 / 2, 1.0 / 20, 11.0 / 1050, 19.0 / 7000, 519.0 / 673750};
+    HyperDual sum, power = 1.0;
+    for (int i = 0; i < 5; ++i) {
+      power = power * I;
+      sum += 0.7 * C[i] / std::pow(8.0, i) * (power - std::pow(3.0, i + 1));
+    }
+    return sum;
+  };
+  double slope = 0;
+  for (const auto& [i, c] :
+       {std::pair{1, 0.5}, {2, 0.05}, {3, 11.0 / 1050}, {4, 19.0 / 7000}, {5, 519.0 / 673750}}) {
+    slope += 0.7 * i * c * std::pow(3.0 / 8, i - 1);
+  }
+  add_forms({"arruda_boyce, from its locking stretch", "materials/arruda_boyce",
+             [](VolumePart v) {
+               return isochor::arruda_boyce({0.7, 0, 0, 0.5, 0, 0, std::sqrt(8.0), v});
+             },
+             [](VolumePart v) {
+               return isochor::isochoric_arruda_boyce({0.7, 0, 0, 0.5, 0, 0, std::sqrt(8.0), v});
+             },
+             chains, slope, 0},
+            out);
+  add_forms(
+      {"gent", "materials/gent",
+       [](VolumePart v) {
+         return isochor::gent({0.8, 90, 0.5, v});
+       },
+       [](VolumePart v) {
+         return isochor::isochoric_gent({0.8, 90, 0.5, v});
+       },
+       [](const HyperDual& I, const HyperDual&) { return -36.0 * log(1.0 - (I - 3.0) / 90.0); }, 0.4, 0},
+      out);
+  add_forms({"veronda_westmann", "materials/veronda_westmann",
+             [](VolumePart v) {
+               return isochor::veronda_westmann({0.9, 0.3, 0.5, v});
+             },
+             [](VolumePart v) {
+               return isochor::isochoric_veronda_westmann({0.9, 0.3, 0.5, v});
+             },
+             [](const HyperDual& I, const HyperDual& II) {
+               return 0.9 * (exp(0.3 * (I - 3.0)) - 1.0) - 0.5 * 0.9 * 0.3 * (II - 3.0);
+             },
+             0.27, -0.135},
+            out);
+  add_forms(
+      {"holmes_mow", "materials/holmes_mow", nullptr,
+       [](VolumePart v) {
+         return isochor::isochoric_holmes_mow({0.6, 0.25, 0.5, v});
+       },
+       [](const HyperDual& I, const HyperDual&) { return 0.6 / (2 * 0.25) * (exp(0.25 * (I - 3.0)) - 1.0); },
+       0.3, 0},
+      out);
+  // Full, lambda_L is inside the exponential, and 0 there in the distortional energy.
+  constexpr double mu = 0.6, lambda = 0.9, beta = 0.2;
+  add({"holmes_mow", "materials/holmes_mow",
+       made(isochor::holmes_mow({mu, beta, 0.5, {isochor::VolumeEnergy::logarithmic, lambda}})),
+       [](const Gradient9& F, double l) {
+         const HyperDual J = determinant(F), I = trace_C(F), II = 0.5 * (I * I - trace_C2(F));
+         const double h = l + 2 * mu;
+         const HyperDual Q = beta / h * ((2 * mu - l) * (I - 3.0) + l * (II - 3.0) - h * log(square(J)));
+         return h / (4 * beta) * (exp(Q) - 1.0);
+       },
+       lambda, false},
+      out);
+}
+
+// One of the library: neo-Hookean through the stress that a data sheet states at twice the length.
+void add_named(std::vector<MaterialCase>& out) {
+  constexpr double mu = 10 * 6894.757 / (2 - 0.25), nu = 0.45;
+  const auto formula = [](const Gradient9& F, double kappa) {
+    const HyperDual J = determinant(F);
+    return 0.5 * mu * (pow(J, -2.0 / 3) * trace_C(F) - 3.0) + 0.5 * kappa * square(J - 1.0);
+  };
+  const std::size_t first = out.size();
+  add({"named: ecoflex_00_30_data_sheet", "materials/named_materials",
+       made(isochor::named_material("ecoflex_00_30_data_sheet", nu)), formula,
+       2 * mu * (1 + nu) / (3 * (1 - 2 * nu)), false},
+      out);
+  for (std::size_t i = first; i < out.size(); ++i) out[i].scale = 10 * mu;
+}
+
+// Isochoric, with exponents whose power sums are polynomials of invariants and of tr S; and full with each U.
+void add_ogden_forms(std::vector<MaterialCase>& out) {
+  constexpr double bulk = 3.1;
+  const char* names[] = {"quadratic", "logarithmic", "mixed"};
+  for (const auto energy :
+       {isochor::VolumeEnergy::quadratic, isochor::VolumeEnergy::logarithmic, isochor::VolumeEnergy::mixed}) {
+    for (const bool isochoric : {false, true}) {
+      auto o = ogden_constants(1.1, 0.5);
+      o.volume = {energy, bulk};
+      const auto formula = [=](const Gradient9& F, double kappa) {
+        const HyperDual J = determinant(F), b = isochoric ? pow(J, -1.0 / 3) : HyperDual(1.0);
+        const HyperDual I = b * b * trace_C(F), s = b * trace_S(F), C2 = b * b * b * b * trace_C2(F);
+        const HyperDual j = b * b * b * J, q = 0.5 * (s * s - I), II = 0.5 * (I * I - C2);
+        const HyperDual sums[] = {s, I, C2, II / (j * j), q / j};
+        HyperDual psi;
+        double c = 0;
+        for (std::size_t p = 0; p < 5; ++p) {
+          psi += o.terms[p].mu / o.terms[p].alpha * (sums[p] - 3.0);
+          c += o.terms[p].mu;
+        }
+        if (!isochoric) {
+          psi = psi - c * (energy == isochor::VolumeEnergy::quadratic ? J - 1.0 : log(J));
+        }
+        return psi + kappa * volume_formula(energy, J);
+      };
+      add({std::string(isochoric ? "isochoric_ogden, " : "ogden, ") + names[static_cast<int>(energy)],
+           "materials/ogden", made(isochoric ? isochor::isochoric_ogden(o) : isochor::ogden(o)), formula,
+           bulk, false},
+          out);
+    }
+  }
+}
+
 // Two families, one of them dispersed, in a neo-Hookean matrix; and everything times a factor.
 void add_fibers(std::vector<MaterialCase>& out) {
   isochor::FiberFamily a, b;
@@ -267,6 +477,110 @@ void add_fibers(std::vector<MaterialCase>& out) {
       made(isochor::with_stiffness_field(made(isochor::with_fibers(matrix, {a, b})), factor))->distortional();
   c.energy = [=](const Gradient9& F) { return 1.7 * energy(F); };
   out.push_back(c);
+}
+
+// psi of the toe law by Gauss quadrature of its T(s)/s, whose derivatives are those of its upper end.
+HyperDual toe_energy(const HyperDual& s, double c3, double c4, double c5, double straight) {
+  const auto T = [=](const HyperDual& v) {
+    if (v.a <= straight) return c3 * (exp(c4 * (v - 1.0)) - 1.0);
+    return c5 * v + (c3 * (std::exp(c4 * (straight - 1)) - 1) - c5 * straight);
+  };
+  // With five points on each of many pieces; the piece with the end scales with it.
+  constexpr double x[] = {0, 0.5384693101056831, 0.9061798459386640},
+                   w[] = {0.5688888888888889, 0.4786286704993665, 0.2369268850561891};
+  const auto piece = [&](const HyperDual& low, const HyperDual& high) {
+    HyperDual sum;
+    const HyperDual middle = 0.5 * (low + high), half = 0.5 * (high - low);
+    for (int i = 0; i < 3; ++i) {
+      for (const double sign : {-1.0, 1.0}) {
+        if (i == 0 && sign < 0) continue;
+        const HyperDual v = middle + sign * x[i] * half;
+        sum += w[i] * half * T(v) / v;
+      }
+    }
+    return sum;
+  };
+  HyperDual psi;
+  if (s.a <= 1) return psi;
+  const HyperDual bend = s.a > straight ? HyperDual(straight) : s;
+  constexpr int n = 40;
+  for (int i = 0; i < n; ++i) {
+    psi += piece(1.0 + (bend - 1.0) * (1.0 * i / n), 1.0 + (bend - 1.0) * ((i + 1.0) / n));
+    if (s.a > straight) psi += piece(bend + (s - bend) * (1.0 * i / n), bend + (s - bend) * ((i + 1.0) / n));
+  }
+  return psi;
+}
+
+// Fibers of J^(-1/3) F, with dispersion, another exponent and the toe law, in matrices of the same kind.
+void add_isochoric_fibers(std::vector<MaterialCase>& out) {
+  const auto along = [](const Gradient9& F, double x, double y, double z) {
+    const double n = x * x + y * y + z * z, v[3] = {x, y, z};
+    HyperDual sum;
+    for (std::size_t i = 0; i < 3; ++i) {
+      sum += square(F[3 * i] * v[0] + F[3 * i + 1] * v[1] + F[3 * i + 2] * v[2]);
+    }
+    return sum / n;
+  };
+  const auto matrix = [](const Gradient9& F) {
+    return 0.55 * (pow(determinant(F), -2.0 / 3) * trace_C(F) - 3.0);
+  };
+  const MaterialPtr base = made(isochor::isochoric_yeoh({{0.55}, 0.3}));
+  struct Case {
+    std::string name;
+    isochor::FiberFamily family;
+    std::function<HyperDual(const Gradient9&)> energy;
+  };
+  std::vector<Case> list;
+  isochor::FiberFamily f;
+  f.direction = {1, 2, 2};
+  f.k1 = 0.8;
+  f.k2 = 0.4;
+  f.dispersion = 0.15;
+  f.isochoric = true;
+  list.push_back({"Holzapfel-Gasser-Ogden", f, [=](const Gradient9& F) {
+                    const HyperDual a = pow(determinant(F), -2.0 / 3);
+                    const HyperDual E = a * (0.15 * trace_C(F) + 0.55 * along(F, 1, 2, 2)) - 1.0;
+                    if (E.a <= 0) return HyperDual();
+                    return 0.8 / 0.8 * (exp(0.4 * E * E) - 1.0);
+                  }});
+  f.dispersion = 0;
+  f.exponent = 3.5;
+  list.push_back({"exponential power 3.5, isochoric", f, [=](const Gradient9& F) {
+                    const HyperDual E = pow(determinant(F), -2.0 / 3) * along(F, 1, 2, 2) - 1.0;
+                    if (E.a <= 0) return HyperDual();
+                    return 0.8 / (3.5 * 0.4) * (exp(0.4 * pow(E, 3.5)) - 1.0);
+                  }});
+  f.isochoric = false;
+  f.k2 = 0;
+  list.push_back({"power 3.5", f, [=](const Gradient9& F) {
+                    const HyperDual E = along(F, 1, 2, 2) - 1.0;
+                    return E.a <= 0 ? HyperDual() : 0.8 / 3.5 * pow(E, 3.5);
+                  }});
+  f.exponent = 2;
+  f.law = isochor::FiberLaw::toe;
+  f.k1 = 0.2;
+  f.k2 = 4;
+  f.straight_modulus = 2.5;
+  f.straight_stretch = 1.3;
+  list.push_back({"toe", f, [=](const Gradient9& F) {
+                    return toe_energy(pow(along(F, 1, 2, 2), 0.5), 0.2, 4, 2.5, 1.3);
+                  }});
+  f.isochoric = true;
+  list.push_back({"toe, isochoric", f, [=](const Gradient9& F) {
+                    return toe_energy(pow(determinant(F), -1.0 / 3) * pow(along(F, 1, 2, 2), 0.5), 0.2, 4,
+                                      2.5, 1.3);
+                  }});
+  for (const Case& one : list) {
+    MaterialCase c;
+    c.name = "isochoric_yeoh with fibers, " + one.name;
+    c.covers = {"materials/fibers"};
+    c.material = made(isochor::with_fibers(base, {one.family}))->distortional();
+    c.energy = [=, fibers = one.energy](const Gradient9& F) { return matrix(F) + fibers(F); };
+    c.isotropic = false;
+    c.scale = 10;
+    c.largest_J = 2.5;
+    out.push_back(c);
+  }
 }
 
 // On a base with a barrier, and on one that lives through inversion.
@@ -390,7 +704,11 @@ std::vector<MaterialCase> material_cases() {
   add_stvk(out);
   add_linear(out);
   add_native(out);
+  add_strain_laws(out);
+  add_ogden_forms(out);
+  add_named(out);
   add_fibers(out);
+  add_isochoric_fibers(out);
   add_compression_penalty(out);
   add_poisson_field(out);
   add_element_guard(out);
@@ -416,6 +734,40 @@ std::vector<ModelCase> model_cases() {
       native("fung", {"materials/native_constants"}, isochor::fung, fung_constants),
       native("arruda_boyce", {"materials/native_constants"}, isochor::arruda_boyce, arruda_boyce_constants),
       native("ogden", {"materials/native_constants"}, isochor::ogden, ogden_constants),
+      native("isochoric_mooney_rivlin", {"materials/strain_law"}, isochor::isochoric_mooney_rivlin,
+             mooney_constants),
+      native("isochoric_fung", {"materials/strain_law"}, isochor::isochoric_fung, fung_constants),
+      native("isochoric_arruda_boyce", {"materials/strain_law"}, isochor::isochoric_arruda_boyce,
+             arruda_boyce_constants),
+      native("isochoric_ogden", {"materials/strain_law"}, isochor::isochoric_ogden, ogden_constants),
+      native("yeoh, log J", {"materials/strain_law", "materials/stability"}, isochor::yeoh,
+             [](double mu, double nu) {
+               return isochor::YeohConstants{{mu / 2, -0.01 * mu}, nu, {isochor::VolumeEnergy::logarithmic}};
+             }),
+      native("isochoric_yeoh, mixed", {"materials/strain_law"}, isochor::isochoric_yeoh,
+             [](double mu, double nu) {
+               return isochor::YeohConstants{{mu / 2, 0.1 * mu}, nu, {isochor::VolumeEnergy::mixed}};
+             }),
+      native("gent", {"materials/strain_law"}, isochor::gent,
+             [](double mu, double nu) {
+               return isochor::GentConstants{mu, 30, nu};
+             }),
+      native("isochoric_gent", {"materials/strain_law"}, isochor::isochoric_gent,
+             [](double mu, double nu) {
+               return isochor::GentConstants{mu, 30, nu};
+             }),
+      native("isochoric_veronda_westmann", {"materials/strain_law"}, isochor::isochoric_veronda_westmann,
+             [](double mu, double nu) {
+               return isochor::VerondaWestmannConstants{mu / 0.4, 0.4, nu, {isochor::VolumeEnergy::mixed}};
+             }),
+      native("holmes_mow", {"materials/strain_law"}, isochor::holmes_mow,
+             [](double mu, double nu) {
+               return isochor::HolmesMowConstants{mu, 0.5, nu};
+             }),
+      native("isochoric_holmes_mow", {"materials/strain_law"}, isochor::isochoric_holmes_mow,
+             [](double mu, double nu) {
+               return isochor::HolmesMowConstants{mu, 0.5, nu};
+             }),
   };
 }
 

@@ -96,6 +96,18 @@ void add_volumes(std::vector<SceneCase>& out) {
         out.push_back(c);
       }
     }
+    for (const auto& [space, strain] : {std::pair{VolumeSpace::node, VolumeStrain::mixed},
+                                        {VolumeSpace::element, VolumeStrain::mixed},
+                                        {VolumeSpace::element, VolumeStrain::mean_logarithmic},
+                                        {VolumeSpace::element, VolumeStrain::mean_mixed},
+                                        {VolumeSpace::body, VolumeStrain::mean_logarithmic}}) {
+      SceneCase c = one_field;
+      c.name = name + ", volume rows, space " + std::to_string(static_cast<int>(space)) + ", strain " +
+               std::to_string(static_cast<int>(strain));
+      c.covers = covers;
+      c.effects = {volume_rows(space, strain)};
+      out.push_back(c);
+    }
     for (const auto strain : {VolumeStrain::linear, VolumeStrain::logarithmic}) {
       for (const bool hard : {false, true}) {
         isochor::VolumeZone low{"low", {}, {0, 1, 2}, {}, {}, hard ? 0.0 : 1.0};

@@ -124,7 +124,8 @@ inline Vec3 displacement_at(const isochor::World& world, isochor::BodyId body, c
 }
 
 inline Mesh scene_mesh(const std::string& name) {
-  return value(isochor::read_mesh(std::string(ISOCHOR_SCENES) + "/meshes/" + name + ".msh"));
+  std::string path = ISOCHOR_SCENES "/meshes/";
+  return value(isochor::read_mesh(path.append(name).append(".msh")));
 }
 
 inline const char* name_of(isochor::Element e) {

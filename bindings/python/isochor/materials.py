@@ -15,11 +15,21 @@ from .errors import Error
 __all__ = ["Material"]
 
 # Constants that single laws have. The table knows them by their meaning only.
+_VOLUME = ("poisson", "bulk", "volume_energy")
+_FAMILIES = {
+    "mooney_rivlin": ("c1", "c2", "c20", "c11", "c02", *_VOLUME),
+    "fung": ("mu0", "mu1", "gamma", *_VOLUME),
+    "arruda_boyce": ("mu", "beta1", "beta2", "beta3", "beta4", "locking_stretch", *_VOLUME),
+    "ogden": ("terms", *_VOLUME),
+    "yeoh": ("c", *_VOLUME),
+    "gent": ("mu", "jm", *_VOLUME),
+    "veronda_westmann": ("c1", "c2", *_VOLUME),
+    "holmes_mow": ("mu", "beta", *_VOLUME),
+}
 _OWN = {
-    "mooney_rivlin": ("c1", "c2", "poisson"),
-    "fung": ("mu0", "mu1", "gamma", "poisson"),
-    "arruda_boyce": ("mu", "beta1", "beta2", "poisson"),
-    "ogden": ("terms", "poisson"),
+    **_FAMILIES,
+    **{f"isochoric_{law}": own for law, own in _FAMILIES.items()},
+    "named": ("name", "poisson"),
     "stvk_resistant": ("young", "poisson", "mu", "lambda", "bulk", "bulk_choice", "resistance"),
     "isochoric_extended": ("young", "poisson", "mu", "lambda", "bulk", "bulk_choice", "threshold"),
 }

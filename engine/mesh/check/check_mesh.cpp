@@ -86,6 +86,12 @@ void check_lengths(const Mesh& mesh, MeshReport& report) {
            join("field '", field.name, "' has ", field.values.size(), " values for ", mesh.nodes.size(),
                 " nodes of ", field.components, " components"));
   }
+  for (const MeshField& field : mesh.cell_fields) {
+    if (field.components > 0 && field.values.size() == cells * at(field.components)) continue;
+    refuse(report, "array-length",
+           join("cell field '", field.name, "' has ", field.values.size(), " values for ", cells,
+                " cells of ", field.components, " components"));
+  }
 }
 
 void check_indices(const Mesh& mesh, MeshReport& report) {

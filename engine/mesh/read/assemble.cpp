@@ -381,6 +381,17 @@ Mesh assemble(RawMesh raw, double scale) {
   adopt_nodes(raw, mesh, place, used, scale);
   for (Index& n : raw.cells) n = place[at(n)];
   mesh.cells = std::move(raw.cells);
+  for (MeshField& field : raw.cell_fields) {
+    if (field.values.size() == at(mesh.cell_count()) * at(field.components)) {
+      mesh.cell_fields.push_back(std::move(field));
+      continue;
+    }
+    mesh.notes.push_back(
+        {"partial-field",
+         join("field '", field.name, "' is not in every cell and was left out; write it for ", "all of them"),
+         1,
+         {}});
+  }
   mesh.cell_label = std::move(raw.cell_label);
   drop_plain(mesh.node_label);
   drop_plain(mesh.cell_label);

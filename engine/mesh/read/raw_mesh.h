@@ -42,6 +42,7 @@ struct RawMesh {
   std::map<std::int64_t, RawSurface> quadrangles;
   std::map<std::pair<int, std::int64_t>, MeshNodeSet> node_sets;  // by dimension and number
   std::vector<MeshField> fields;
+  std::vector<MeshField> cell_fields;  // of vectors, in the cells so far; shorter where a part lacks them
 
   std::map<std::string, std::int64_t> foreign_cells;  // volume cells of no kind that is read, by type
   std::int64_t foreign_faces = 0;                     // faces that no cell can have (polygons, ...)

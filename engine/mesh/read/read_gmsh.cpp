@@ -228,6 +228,48 @@ bool read_section(GmshFile& f, std::string_view name, int major) {
   return true;
 }
 
+// Vectors in elements become a field of the volume cells; cells that the section leaves out get 0, which no
+// fiber takes. Whatever makes no sense is left out, as other data on elements are.
+void read_element_data(GmshFile& f) {
+  Cursor at = f.at;
+  try {
+    MeshField field;
+    const std::size_t texts = at.checked_count(at.integer("the number of texts"), 2, "the number of texts");
+    for (std::size_t i = 0; i < texts; ++i) {
+      const std::string_view text = at.quoted_text("a text");
+      if (i == 0) field.name = text;
+    }
+    const std::size_t reals = at.checked_count(at.integer("the number of reals"), 2, "the number of reals");
+    for (std::size_t i = 0; i < reals; ++i) at.any_real("a real");
+    const std::int64_t integers = at.integer("the number of integers");
+    std::array<std::int64_t, 3> header{};
+    for (std::int64_t i = 0; i < integers; ++i) {
+      const std::int64_t n = at.integer("an integer");
+      if (i < 3) header[static_cast<std::size_t>(i)] = n;
+    }
+    if (header[1] != 3 || f.raw.cell_label.empty()) return;
+    const std::size_t count = at.checked_count(header[2], 4, "the number of values");
+    field.components = 3;
+    field.values.assign(3 * f.raw.cell_label.size(), 0);
+    std::map<std::int64_t, std::size_t> cell_of;
+    for (std::size_t c = 0; c < f.raw.cell_label.size(); ++c) cell_of[f.raw.cell_label[c]] = c;
+    if (at.binary()) at.line("the end of the line");
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int64_t label =
+          at.binary() ? at.raw<std::int32_t>("an element number") : at.integer("an element number");
+      const auto cell = cell_of.find(label);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double v = at.binary() ? at.raw<double>("a value") : at.any_real("a value");
+        if (cell != cell_of.end()) field.values[3 * cell->second + k] = v;
+      }
+    }
+    std::erase_if(f.raw.cell_fields, [&](const MeshField& old) { return old.name == field.name; });
+    f.raw.cell_fields.push_back(std::move(field));
+  } catch (const ReadFailure&) {
+    return;
+  }
+}
+
 // Moves behind $ElementData or $ElementNodeData of a binary file by its counts: a binary number may look like
 // the end of the section, and some writers put that behind the last number without a line of its own. False,
 // and nothing moved, where the counts make no sense.
@@ -263,6 +305,7 @@ bool skip_element_data(GmshFile& f, bool by_node) {
 // Moves behind a section that says nothing a Mesh holds; `end` closes it.
 void skip_section(GmshFile& f, const std::string& name, const std::string& end) {
   Cursor& at = f.at;
+  if (name == "$ElementData") read_element_data(f);
   if (at.binary() && (name == "$ElementData" || name == "$ElementNodeData"))
     skip_element_data(f, name == "$ElementNodeData");
   const std::size_t start = at.offset();

@@ -144,6 +144,21 @@ void add_vtk_cells(const Cursor& at, const VtkCells& cells, const std::vector<Vt
   const VtkArray* region = region_array(cell_arrays, cells.count());
   const auto first_label = static_cast<std::int64_t>(raw.cell_label.size());
   const std::int64_t points = static_cast<std::int64_t>(raw.nodes.size()) - first_node;
+  // Arrays of vectors become fields of the volume cells.
+  std::vector<std::pair<const VtkArray*, MeshField*>> vectors;
+  const std::size_t before = raw.cells.size();
+  for (const VtkArray& array : cell_arrays) {
+    if (array.components != 3 || array.values.size() != 3 * cells.count()) continue;
+    const auto same = std::find_if(raw.cell_fields.begin(), raw.cell_fields.end(),
+                                   [&](const MeshField& old) { return old.name == array.name; });
+    if (same == raw.cell_fields.end() && before == 0) raw.cell_fields.push_back({array.name, 3, {}});
+  }
+  for (const VtkArray& array : cell_arrays) {
+    if (array.components != 3 || array.values.size() != 3 * cells.count()) continue;
+    for (MeshField& field : raw.cell_fields) {
+      if (field.name == array.name) vectors.emplace_back(&array, &field);
+    }
+  }
   std::vector<Index> nodes;
   for (std::size_t c = 0; c < cells.count(); ++c) {
     const std::int64_t label = first_label + static_cast<std::int64_t>(c);
@@ -163,7 +178,13 @@ void add_vtk_cells(const Cursor& at, const VtkCells& cells, const std::vector<Vt
       nodes.push_back(first_node + static_cast<Index>(n));
     }
     const std::int64_t tag = region ? static_cast<std::int64_t>(region->values[c]) : no_tag;
+    const std::size_t filled = raw.cells.size();
     add_cell(at, label, cells.types[c], tag, nodes, raw);
+    if (raw.cells.size() == filled) continue;
+    for (const auto& [array, field] : vectors) {
+      const auto from = array->values.begin() + static_cast<std::ptrdiff_t>(3 * c);
+      field->values.insert(field->values.end(), from, from + 3);
+    }
   }
 }
 

@@ -33,7 +33,7 @@ struct VolumeDef {
   std::string name = "volume";
   BodyId body{};
   VolumeSpace space = VolumeSpace::node;
-  VolumeStrain strain = VolumeStrain::linear;
+  VolumeStrain strain = VolumeStrain::by_law;
   // Regions it covers; empty: all. Rows are split at interfaces between regions, where the pressure jumps.
   std::vector<std::string> regions;
   // Space ring: one row over the cells within so many rings around each node, 1 those that touch it.
