@@ -45,19 +45,19 @@ double Controller::largest_turn(double t0, double t1) const {
   return largest;
 }
 
-// As BarrierStencils::entry(). A node that moves as it did and is then not run over does not count.
-double Controller::largest_entry(double t0, double t1) {
+// As BarrierStencils::intrusion(). A node that moves as it did and is then not run over does not count.
+double Controller::largest_intrusion(double t0, double t1) {
   const State& state = context_.state;
   double largest = 0;
   for (const auto& [pool, barrier] : context_.system().facets().barriers) {
-    const double still = barrier->entry(t0, t1, state.x, state.x);
+    const double still = barrier->intrusion(t0, t1, state.x, state.x);
     if (still <= largest) continue;
     if (ahead_.empty()) {
       largest = still;
       continue;
     }
     for (std::size_t i = 0; i < ahead_.size(); ++i) ahead_[i] = state.x[i] + (t1 - t0) * state.v[i];
-    largest = std::max(largest, std::min(still, barrier->entry(t0, t1, state.x, ahead_)));
+    largest = std::max(largest, std::min(still, barrier->intrusion(t0, t1, state.x, ahead_)));
   }
   return largest;
 }
@@ -105,7 +105,7 @@ void Controller::finish(const Clock& clock, StepReport& report) {
   report.expected_negative_pivots = context_.system().rows();
   // What was rejected says how the state is that stays.
   if (report.status != StepStatus::converged && report.status != StepStatus::unfinished) {
-    const Admission::Verdict now = stepper_.end().look();
+    const Admission::Verdict now = stepper_.end().judge_state();
     report.min_J = now.min_J;
     report.inverted_cells = now.inverted;
   }
@@ -199,7 +199,7 @@ struct Controller::Advance {
   StepReport report;
 };
 
-// Of the next increment: what is left at most; and no more than a turn or an entry allows.
+// Of the next increment: what is left at most; and no more than a turn or an intrusion allows.
 double Controller::next_length(const Advance& a) {
   constexpr double most_turn = 2;  // [rad] an increment
   const double t = context_.state.t, remaining = a.t_end - t;
@@ -207,7 +207,7 @@ double Controller::next_length(const Advance& a) {
   double dt = a.increment > 0.999 * remaining ? remaining : a.increment;
   // The end of half a turn is that of half a turn the other way. And what an obstacle runs over within an
   // increment may come out on any side of it.
-  while ((largest_turn(t, t + dt) > most_turn || largest_entry(t, t + dt) > 1) && dt > 1e-9 * a.h) dt *= 0.5;
+  while ((largest_turn(t, t + dt) > most_turn || largest_intrusion(t, t + dt) > 1) && dt > 1e-9 * a.h) dt *= 0.5;
   return dt;
 }
 

@@ -26,7 +26,7 @@ class Controller {
   struct Advance;
   struct Clock;
   double largest_turn(double t0, double t1) const;
-  double largest_entry(double t0, double t1);
+  double largest_intrusion(double t0, double t1);
   void begin_amounts(double t0, double t1);
   SaddleReport attempt_within(double h, const StepBudget& budget);
   void describe_single(const SaddleReport& solve, double t_target, StepReport& report);
