@@ -215,104 +215,137 @@ System nearest(int unknowns) {
   return block(best_n, best_n, best_m);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+struct Choices {
   std::vector<int> sizes{1600, 8000, 32617};
   int repeats = 7, threads = 1;
   bool all = false, sweep = false, stiffness = false;
+};
+
+bool parse(int argc, char** argv, Choices& c) {
   for (int i = 1; i < argc; ++i) {
     const bool more = i + 1 < argc;
     if (std::strcmp(argv[i], "--all") == 0) {
-      all = true;
+      c.all = true;
     } else if (std::strcmp(argv[i], "--sweep") == 0) {
-      sweep = true;
+      c.sweep = true;
     } else if (std::strcmp(argv[i], "--stiffness") == 0) {
-      stiffness = true;
+      c.stiffness = true;
     } else if (std::strcmp(argv[i], "--cpu") == 0) {
       take_cpu_time = true;
     } else if (more && std::strcmp(argv[i], "--repeats") == 0) {
-      repeats = std::max(1, std::atoi(argv[++i]));
+      c.repeats = std::max(1, std::atoi(argv[++i]));
     } else if (more && std::strcmp(argv[i], "--blas-threads") == 0) {
-      threads = std::atoi(argv[++i]);
+      c.threads = std::atoi(argv[++i]);
     } else if (more && std::strcmp(argv[i], "--sizes") == 0) {
-      sizes.clear();
+      c.sizes.clear();
       for (const char* p = argv[++i]; *p != '\0';) {
         char* end = nullptr;
-        sizes.push_back(static_cast<int>(std::strtol(p, &end, 10)));
+        c.sizes.push_back(static_cast<int>(std::strtol(p, &end, 10)));
         p = *end == ',' ? end + 1 : end;
         if (end == p && *p != '\0') break;
       }
     } else {
       std::fprintf(stderr, "unknown argument '%s'\n", argv[i]);
-      return 2;
+      return false;
     }
   }
-  const bool settable = set_blas_threads(threads);
+  return true;
+}
+
+bool run_mumps(const char* label, const MumpsOptions& o, const System& s, int repeats) {
+  return run(label, make_mumps_solver(o).get(), s, repeats);
+}
+
+bool run_orderings(const System& s, int repeats) {
+  bool good = true;
+  const auto mumps = [&](const char* label, const MumpsOptions& o) {
+    good &= run_mumps(label, o, s, repeats);
+  };
+  mumps("mumps, our choice of ordering", {});
+  MumpsOptions o;
+  o.ordering = OrderingMethod::metis;
+  mumps("mumps, METIS on the groups", o);
+  o.ordering = OrderingMethod::amf;
+  mumps("mumps, AMF on the groups", o);
+  o.ordering = OrderingMethod::pord;
+  mumps("mumps, PORD on the unknowns", o);
+  o.ordering = OrderingMethod::amd;
+  mumps("mumps, AMD on the groups", o);
+  return good;
+}
+
+bool run_sweep(const System& s, int repeats) {
+  bool good = true;
+  const auto mumps = [&](const char* label, const MumpsOptions& o) {
+    good &= run_mumps(label, o, s, repeats);
+  };
+  MumpsOptions o;
+  o.scaling = true;
+  mumps("  + scaling", o);
+  o = {};
+  for (const double threshold : {1e-1, 1e-3, 1e-4, 1e-6, 0.0}) {
+    o.pivot_threshold = threshold;
+    char label[64];
+    std::snprintf(label, sizeof label, "  pivot threshold %.0e", threshold);
+    mumps(label, o);
+  }
+  for (const auto& [choice, name] :
+       std::vector<std::pair<int, const char*>>{{0, "  ordering: AMD"},
+                                                {2, "  ordering: AMF"},
+                                                {3, "  ordering: Scotch"},
+                                                {4, "  ordering: PORD"},
+                                                {5, "  ordering: METIS (or else auto)"},
+                                                {6, "  ordering: QAMD"},
+                                                {7, "  ordering: auto"}}) {
+    o = {};
+    o.own_ordering = choice;
+    mumps(name, o);
+  }
+  System ungrouped = s;
+  ungrouped.pattern.group.clear();
+  good &= run("  without groups", make_mumps_solver().get(), ungrouped, repeats);
+  return good;
+}
+
+bool run_others(const System& s, int repeats) {
+  bool good = true;
+  good &= run("cholmod, METIS", make_cholmod_solver(OrderingMethod::metis).get(), s, repeats);
+  good &= run("cholmod, AMD", make_cholmod_solver(OrderingMethod::amd).get(), s, repeats);
+  good &= run("eigen, METIS", make_eigen_solver(OrderingMethod::metis).get(), s, repeats);
+  good &= run("eigen, AMD", make_eigen_solver(OrderingMethod::amd).get(), s, repeats);
+  return good;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Choices c;
+  if (!parse(argc, argv, c)) return 2;
+  const bool settable = set_blas_threads(c.threads);
   for (const SolverBackend& b : linear_solver_backends()) {
     std::printf("%s %s (%s)\n", b.name.c_str(), b.version.c_str(), b.license.c_str());
   }
   std::printf("BLAS threads: %s%d; %s times in ms, minimum and median of up to %d, the first excluded\n\n",
-              settable ? "" : "not settable, wanted ", threads, take_cpu_time ? "processor" : "wall",
-              repeats);
+              settable ? "" : "not settable, wanted ", c.threads, take_cpu_time ? "processor" : "wall",
+              c.repeats);
   std::printf("%-34s %7s | %8s | %17s | %15s | %10s |\n", "backend", "size", "analyze", "factor", "solve",
               "factor nnz");
   bool good = true;
-  for (const int size : sizes) {
-    const System s = stiffness ? stiffness_of(nearest(size)) : nearest(size);
+  for (const int size : c.sizes) {
+    const System s = c.stiffness ? stiffness_of(nearest(size)) : nearest(size);
     const auto fronts = [&](const char* label, const MultifrontalOptions& o) {
-      good &= run(label, make_multifrontal_solver(make_mumps_solver(), o).get(), s, repeats);
+      good &= run(label, make_multifrontal_solver(make_mumps_solver(), o).get(), s, c.repeats);
     };
     fronts("multifrontal, single precision", {.single_from = 0});
     fronts("multifrontal, double precision", {.single_precision = false});
-    if (stiffness) {
-      good &= run("cholmod, supernodal", make_linear_solver(Solver::cholmod_supernodal).get(), s, repeats);
+    if (c.stiffness) {
+      good &= run("cholmod, supernodal", make_linear_solver(Solver::cholmod_supernodal).get(), s, c.repeats);
     }
-    const auto mumps = [&](const char* label, const MumpsOptions& o) {
-      good &= run(label, make_mumps_solver(o).get(), s, repeats);
-    };
-    mumps("mumps, our choice of ordering", {});
-    MumpsOptions o;
-    o.ordering = OrderingMethod::metis;
-    mumps("mumps, METIS on the groups", o);
-    o.ordering = OrderingMethod::amf;
-    mumps("mumps, AMF on the groups", o);
-    o.ordering = OrderingMethod::pord;
-    mumps("mumps, PORD on the unknowns", o);
-    o.ordering = OrderingMethod::amd;
-    mumps("mumps, AMD on the groups", o);
-    if (sweep) {
-      o = {};
-      o.scaling = true;
-      mumps("  + scaling", o);
-      o = {};
-      for (const double threshold : {1e-1, 1e-3, 1e-4, 1e-6, 0.0}) {
-        o.pivot_threshold = threshold;
-        char label[64];
-        std::snprintf(label, sizeof label, "  pivot threshold %.0e", threshold);
-        mumps(label, o);
-      }
-      for (const auto& [choice, name] :
-           std::vector<std::pair<int, const char*>>{{0, "  ordering: AMD"},
-                                                    {2, "  ordering: AMF"},
-                                                    {3, "  ordering: Scotch"},
-                                                    {4, "  ordering: PORD"},
-                                                    {5, "  ordering: METIS (or else auto)"},
-                                                    {6, "  ordering: QAMD"},
-                                                    {7, "  ordering: auto"}}) {
-        o = {};
-        o.own_ordering = choice;
-        mumps(name, o);
-      }
-      System ungrouped = s;
-      ungrouped.pattern.group.clear();
-      good &= run("  without groups", make_mumps_solver().get(), ungrouped, repeats);
-    } else if (all || size <= 10000) {
-      good &= run("cholmod, METIS", make_cholmod_solver(OrderingMethod::metis).get(), s, repeats);
-      good &= run("cholmod, AMD", make_cholmod_solver(OrderingMethod::amd).get(), s, repeats);
-      good &= run("eigen, METIS", make_eigen_solver(OrderingMethod::metis).get(), s, repeats);
-      good &= run("eigen, AMD", make_eigen_solver(OrderingMethod::amd).get(), s, repeats);
-    }
+    good &= run_orderings(s, c.repeats);
+    if (c.sweep)
+      good &= run_sweep(s, c.repeats);
+    else if (c.all || size <= 10000)
+      good &= run_others(s, c.repeats);
     std::printf("\n");
   }
   return good ? 0 : 1;

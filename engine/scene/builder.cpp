@@ -172,15 +172,15 @@ Result<Index> Builder::add_body(const BodyDef& def) {
     return Error{"body \"" + def.name + "\": " + why};
   const MeshReport report = check_mesh(def.mesh);
   BodyData body;
+  std::string doubtful_units;
   for (const MeshFinding& finding : report.findings) {
     if (finding.severity == Severity::error) {
       return Error{"body \"" + def.name + "\": mesh " + def.mesh.source + ": " + finding.message};
     }
     if (finding.severity == Severity::warning) {
       const std::string text = "body \"" + def.name + "\": mesh " + def.mesh.source + ": " + finding.message;
-      if (finding.code == "units") doubtful_units_ += "; mind the units: " + text;
+      if (finding.code == "units") doubtful_units += "; mind the units: " + text;
       body.warnings.push_back(text);
-      warn(text);
     }
   }
   if (auto r = check_element(def); !r) return Error{r.error()};
@@ -199,11 +199,30 @@ Result<Index> Builder::add_body(const BodyDef& def) {
     body.reference = def.element == Element::hex8 ? &hex8_element() : &tet4_element();
   }
   if (auto r = add_regions(def, body); !r) return Error{r.error()};
-  place_nodes(body);
-  const Index place = slots_.take();
-  bodies_.resize(at(slots_.size()));
-  bodies_[at(place)] = std::move(body);
-  return place;
+  return take_body(std::move(body), doubtful_units);
+}
+
+// Where memory runs out all is as it was.
+Index Builder::take_body(BodyData body, const std::string& doubtful_units) {
+  const std::size_t warnings = warnings_.size(), units = doubtful_units_.size(), nodes = parts_.rest.size();
+  try {
+    warnings_.insert(warnings_.end(), body.warnings.begin(), body.warnings.end());
+    doubtful_units_ += doubtful_units;
+    place_nodes(body);
+    bodies_.reserve(at(slots_.size()) + 1);
+    const Index place = slots_.take();
+    bodies_.resize(at(slots_.size()));
+    bodies_[at(place)] = std::move(body);
+    return place;
+  } catch (...) {
+    warnings_.resize(warnings);
+    doubtful_units_.resize(units);
+    parts_.rest.resize(nodes);
+    parts_.mass.resize(nodes);
+    given_.resize(nodes);
+    owners_.point.resize(nodes);
+    throw;
+  }
 }
 
 void Builder::place_nodes(BodyData& body) {
@@ -254,9 +273,16 @@ Builder Builder::again() const {
 }
 
 void Builder::remove_body(Index place) {
-  bodies_[at(place)] = {};
-  slots_.release(place);
-  *this = again();
+  Slots slots = slots_;
+  BodyData body = std::exchange(bodies_[at(place)], {});
+  try {
+    slots_.release(place);
+    *this = again();
+  } catch (...) {
+    slots_ = std::move(slots);
+    bodies_[at(place)] = std::move(body);
+    throw;
+  }
 }
 
 Result<std::vector<RegionData*>> Builder::regions_for(BodyId id, const std::string& region,

@@ -306,6 +306,7 @@ class ISOCHOR_API Builder {
   }
   Result<void> add_regions(const BodyDef& def, BodyData& body) const;
   Result<std::vector<RegionData*>> regions_for(BodyId id, const std::string& region, const std::string& who);
+  Index take_body(BodyData body, const std::string& doubtful_units);
   void place_nodes(BodyData& body);
   Result<void> build_region(BodyData& body, RegionData& region);
   Result<std::shared_ptr<const SolidData>> patches_of(const BodyData& body, RegionData& region) const;

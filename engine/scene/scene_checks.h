@@ -15,6 +15,10 @@ struct SceneFacts {
   std::map<std::string, std::vector<Index>> held_by;  // nodes that each support holds, in any direction
 };
 
+// Connected parts of all bodies: a part number for every node. Stencils of any pool connect, so bodies that
+// are tied together count as one.
+std::vector<Index> connected_parts(const SceneFacts& facts, Index& count);
+
 // Statics: every connected part must be held against its six rigid motions.
 Result<void> check_anchored(const SceneFacts& facts);
 

@@ -10,9 +10,10 @@ namespace isochor {
 
 class Slots {
  public:
-  // A free place, or a new one.
+  // A free place, or a new one. Where memory runs out, here and in release(), all stays as it was.
   Index take() {
     if (free_.empty()) {
+      taken_.reserve(taken_.size() + 1);
       generation_.push_back(1);
       taken_.push_back(1);
       return size() - 1;
@@ -24,8 +25,8 @@ class Slots {
     return place;
   }
   void release(Index place) {
-    taken_[at(place)] = 0;
     free_.push_back(place);
+    taken_[at(place)] = 0;
   }
   Index size() const { return static_cast<Index>(taken_.size()); }
   Index taken() const { return size() - static_cast<Index>(free_.size()); }

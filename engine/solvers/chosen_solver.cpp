@@ -67,7 +67,9 @@ bool ChosenSolver::use_direct(std::string reason, FactorReport& report) {
   const double bytes = report.memory > 0 ? report.memory : 12.0 * static_cast<double>(report.factor_nonzeros);
   if (report.status == FactorStatus::out_of_memory || bytes > memory_) {
     direct_fits_ = false;
-    reason_ = "factors would take " + in_gib(bytes) + " and " + in_gib(memory_) + " are for them";
+    reason_ = report.status == FactorStatus::out_of_memory
+                  ? "memory ran out where factors were prepared"
+                  : "factors would take " + in_gib(bytes) + " and " + in_gib(memory_) + " are for them";
     return false;
   }
   now_ = direct_.get();

@@ -94,6 +94,8 @@ SolveReport DirectSolver::solve(std::span<const double> right_hand_side, std::sp
     if (n == 0) return {true, 0, 0};
     try {
       if (std::isfinite(max_norm(right_hand_side))) report = refine_as_needed(right_hand_side, solution);
+    } catch (const std::bad_alloc&) {
+      throw;  // says nothing about the matrix
     } catch (...) {
       report.ok = false;
     }

@@ -34,7 +34,7 @@ class DirectSolver : public LinearSolver {
     return false;
   }
 
-  // The refined solution and how good it is. Also what a backend probes a doubtful factor with.
+  // The refined solution and how good it is. Also what a backend asks a doubtful factor with.
   SolveReport refine(std::span<const double> b, std::span<double> x);
 
   bool two_triangles() const { return two_triangles_; }

@@ -90,7 +90,7 @@ double Admission::determinant(const Region& region, std::size_t k, std::span<con
   return smallest;
 }
 
-Admission::Verdict Admission::look(std::span<const Vec3> before, std::span<const Vec3> x) const {
+Admission::Verdict Admission::judge(std::span<const Vec3> before, std::span<const Vec3> x) const {
   Verdict v;
   bool first = true;
   for (const Region& region : regions_) {

@@ -26,7 +26,7 @@ class Admission {
   static constexpr double crushed_below = 0.01;
 
   // `before` are the positions from which the increment began: what a host set inverted may still be so.
-  Verdict look(std::span<const Vec3> before, std::span<const Vec3> x) const;
+  Verdict judge(std::span<const Vec3> before, std::span<const Vec3> x) const;
 
   // One sentence about cells that may not be as they are; empty where there are none.
   std::string refusal(const Verdict& verdict) const;

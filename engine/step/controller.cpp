@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/out_of_memory.h"
 #include "engine/base/text.h"
 #include "engine/step/step_report.h"
 #include "engine/step/time_scheme.h"
@@ -31,8 +32,14 @@ bool singular_at_once(const SaddleReport& r) {
 
 }  // namespace
 
-Controller::Controller(const StepContext& context, Amounts& amounts, Interrupt& interrupt)
-    : context_(context), amounts_(amounts), interrupt_(interrupt), stepper_(context), time_error_(context) {
+Controller::Controller(const StepContext& context, Amounts& amounts, Interrupt& interrupt,
+                       std::optional<State>& settled)
+    : context_(context),
+      amounts_(amounts),
+      interrupt_(interrupt),
+      stepper_(context),
+      time_error_(context),
+      settled_(settled) {
   if (context_.options.scheme->has_inertia()) ahead_.resize(context_.state.x.size());
   stepper_.set_stop_wanted([this] { return interrupt_.wanted(); });
 }
@@ -45,19 +52,19 @@ double Controller::largest_turn(double t0, double t1) const {
   return largest;
 }
 
-// As BarrierStencils::entry(). A node that moves as it did and is then not run over does not count.
-double Controller::largest_entry(double t0, double t1) {
+// As BarrierStencils::intrusion(). A node that moves as it did and is then not run over does not count.
+double Controller::largest_intrusion(double t0, double t1) {
   const State& state = context_.state;
   double largest = 0;
   for (const auto& [pool, barrier] : context_.system().facets().barriers) {
-    const double still = barrier->entry(t0, t1, state.x, state.x);
+    const double still = barrier->intrusion(t0, t1, state.x, state.x);
     if (still <= largest) continue;
     if (ahead_.empty()) {
       largest = still;
       continue;
     }
     for (std::size_t i = 0; i < ahead_.size(); ++i) ahead_[i] = state.x[i] + (t1 - t0) * state.v[i];
-    largest = std::max(largest, std::min(still, barrier->entry(t0, t1, state.x, ahead_)));
+    largest = std::max(largest, std::min(still, barrier->intrusion(t0, t1, state.x, ahead_)));
   }
   return largest;
 }
@@ -66,6 +73,7 @@ double Controller::largest_entry(double t0, double t1) {
 void Controller::begin_amounts(double t0, double t1) {
   amounts_before_.clear();
   amounts_.save(amounts_before_);
+  amounts_began_ = true;
   amounts_.begin(t0, t1, !context_.options.scheme->has_inertia());
 }
 
@@ -98,18 +106,57 @@ bool Controller::give_back_unfinished(StepReport& report) {
   return true;
 }
 
+// Memory may run out anywhere in a step. Its work is on a trial, so that the state is none the worse for it:
+// amounts go back where nothing was advanced, and what solves, which may be half made, is dropped for the
+// next call to make again. False where the state had gone on by then.
+bool Controller::give_back_memory(double t0, bool was_settled) {
+  interrupt_.set_deadline({});
+  context_.methods.drop();
+  if (context_.state.t != t0) return false;
+  if (amounts_began_) amounts_.load(amounts_before_);
+  if (was_settled) settled_.reset();
+  return true;
+}
+
+// `once`: of a single step, which has arrived where the state has gone on.
+template <class Steps>
+StepReport Controller::within_memory(const char* call, bool once, Steps&& steps) {
+  const Clock clock(context_.methods.chosen().seconds());
+  const double t0 = context_.state.t;
+  const bool was_settled = !settled_;
+  amounts_began_ = memory_ran_out_ = false;
+  StepReport report;
+  try {
+    steps(report);
+    if (report.status != StepStatus::invalid) finish(clock, report);
+    if (memory_ran_out_) context_.methods.drop();
+  } catch (const std::bad_alloc&) {
+    const bool went_on = !give_back_memory(t0, was_settled);
+    if (!once || !went_on) report.status = StepStatus::rejected;
+    if (report.status != StepStatus::converged) report.reason = out_of_memory(call);
+    report.seconds.total = clock.total();
+    report.time = context_.state.t;
+  }
+  return report;
+}
+
+void Controller::add(StepReport& total, const SaddleReport& r) {
+  add_solve(total, r);
+  memory_ran_out_ = memory_ran_out_ || r.status == SaddleStatus::out_of_memory;
+}
+
 void Controller::finish(const Clock& clock, StepReport& report) {
   report.seconds = context_.methods.chosen().seconds();
   report.seconds -= clock.before;
   report.seconds.total = clock.total();
   report.expected_negative_pivots = context_.system().rows();
+  report.time = context_.state.t;
   // What was rejected says how the state is that stays.
   if (report.status != StepStatus::converged && report.status != StepStatus::unfinished) {
-    const Admission::Verdict now = stepper_.end().look();
+    const Admission::Verdict now = stepper_.end().judge_state();
     report.min_J = now.min_J;
     report.inverted_cells = now.inverted;
   }
-  report.time = context_.state.t;
 }
 
 SaddleReport Controller::attempt_within(double h, const StepBudget& budget) {
@@ -151,7 +198,7 @@ void Controller::describe_single(const SaddleReport& solve, double t_target, Ste
 }
 
 StepReport Controller::step(double h, const StepBudget& budget) {
-  State& state = context_.state;
+  const State& state = context_.state;
   if (!(h > 0) || !std::isfinite(h)) return invalid_step(bad_length("step", h), state.t);
   if (budget.iterations < 0 || !(budget.seconds >= 0)) {
     return invalid_step("step: a budget of " + std::to_string(budget.iterations) + " iterations and " +
@@ -159,22 +206,26 @@ StepReport Controller::step(double h, const StepBudget& budget) {
                         state.t);
   }
   if (interrupt_.requested()) return cancelled();
-  const Clock clock(context_.methods.chosen().seconds());
+  return within_memory("step", true, [&](StepReport& report) { step_once(h, budget, report); });
+}
+
+void Controller::step_once(double h, const StepBudget& budget, StepReport& report) {
+  State& state = context_.state;
   begin_amounts(state.t, state.t + h);
   if (const double turn = largest_turn(state.t, state.t + h); turn > 0.999 * std::numbers::pi) {
     amounts_.load(amounts_before_);
-    return invalid_step("step: something that is prescribed turns by " + number(turn) +
-                            " rad within the step; from half a turn on its end does not tell the way round: "
-                            "use advance(), or steps of less than 3.14 rad",
-                        state.t);
+    report = invalid_step("step: something that is prescribed turns by " + number(turn) +
+                              " rad within the step; from half a turn on its end does not tell the way "
+                              "round: use advance(), or steps of less than 3.14 rad",
+                          state.t);
+    return;
   }
-  StepReport report;
   stepper_.begin_step();
   stepper_.end().begin_step();
   const double t_target = state.t + h;
   const bool was_settled = !settled_;
   const SaddleReport r = attempt_within(h, budget);
-  add_solve(report, r);
+  add(report, r);
   report.substeps = 1;
   const bool kept = state.t > t_target - 0.5 * h;
   if (kept && r.status != SaddleStatus::converged) report.status = StepStatus::unfinished;
@@ -186,20 +237,18 @@ StepReport Controller::step(double h, const StepBudget& budget) {
   // What is in balance needs nothing to fall back to, nor does what a rejected step left alone.
   if (r.status == SaddleStatus::converged || (!kept && was_settled)) settled_.reset();
   if (stepper_.given_back().empty() && r.status != SaddleStatus::cancelled) give_back_unfinished(report);
-  finish(clock, report);
-  return report;
 }
 
 // advance() on its way.
 struct Controller::Advance {
-  double h = 0, t0 = 0, t_end = 0;
-  double increment = 0;  // that is tried next
-  int successes = 1;     // in a row
-  double lost = 0;       // work in increments that failed, in factorizations
-  StepReport report;
+  double h, t0, t_end;
+  double increment;   // that is tried next
+  int successes = 1;  // in a row
+  double lost = 0;    // work in increments that failed, in factorizations
+  StepReport& report;
 };
 
-// Of the next increment: what is left at most; and no more than a turn or an entry allows.
+// Of the next increment: what is left at most; and no more than a turn or an intrusion allows.
 double Controller::next_length(const Advance& a) {
   constexpr double most_turn = 2;  // [rad] an increment
   const double t = context_.state.t, remaining = a.t_end - t;
@@ -207,7 +256,7 @@ double Controller::next_length(const Advance& a) {
   double dt = a.increment > 0.999 * remaining ? remaining : a.increment;
   // The end of half a turn is that of half a turn the other way. And what an obstacle runs over within an
   // increment may come out on any side of it.
-  while ((largest_turn(t, t + dt) > most_turn || largest_entry(t, t + dt) > 1) && dt > 1e-9 * a.h) dt *= 0.5;
+  while ((largest_turn(t, t + dt) > most_turn || largest_intrusion(t, t + dt) > 1) && dt > 1e-9 * a.h) dt *= 0.5;
   return dt;
 }
 
@@ -233,7 +282,7 @@ bool Controller::make_increment(Advance& a) {
   allowance.persistent = true;
   time_error_.begin();
   const SaddleReport r = stepper_.attempt(dt, allowance);
-  add_solve(a.report, r);
+  add(a.report, r);
   return r.status == SaddleStatus::converged ? took_increment(a, dt, r) : go_on_after_failure(a, dt, r);
 }
 
@@ -286,7 +335,7 @@ bool Controller::go_on_after_failure(Advance& a, double dt, const SaddleReport& 
 
 bool Controller::rescued(Advance& a, double dt) {
   const SaddleReport r = stepper_.damped_motion(dt);
-  add_solve(a.report, r);
+  add(a.report, r);
   if (r.status == SaddleStatus::cancelled) take_cancel(a.report);
   if (r.status != SaddleStatus::converged) return false;
   stepper_.end().describe(r, stepper_.moved(), a.report);
@@ -316,14 +365,14 @@ void Controller::give_up(Advance& a, double dt, const SaddleReport& solve, bool 
 }
 
 StepReport Controller::advance(double h) {
-  State& state = context_.state;
-  if (!(h > 0) || !std::isfinite(h)) return invalid_step(bad_length("advance", h), state.t);
+  if (!(h > 0) || !std::isfinite(h)) return invalid_step(bad_length("advance", h), context_.state.t);
   if (interrupt_.requested()) return cancelled();
-  const Clock clock(context_.methods.chosen().seconds());
-  Advance a;
-  a.h = a.increment = h;
-  a.t0 = state.t;
-  a.t_end = state.t + h;
+  return within_memory("advance", false, [&](StepReport& report) { advance_by(h, report); });
+}
+
+void Controller::advance_by(double h, StepReport& report) {
+  State& state = context_.state;
+  Advance a{h, state.t, state.t + h, h, 1, 0, report};
   begin_amounts(a.t0, a.t_end);
   stepper_.begin_step();
   stepper_.end().begin_step();
@@ -332,13 +381,10 @@ StepReport Controller::advance(double h) {
   while (state.t < a.t_end - 1e-12 * h) {
     if (!make_increment(a)) break;
   }
-  StepReport& report = a.report;
   if (report.status == StepStatus::converged) state.t = a.t_end;
   if (report.substeps > 0) settled_.reset();
   give_back_unfinished(report);
   if (state.t == a.t0) amounts_.load(amounts_before_);  // nothing was advanced
-  finish(clock, report);
-  return std::move(report);
 }
 
 // A step along the path from the state; the state is its end where it converges to one that may be.
@@ -356,7 +402,7 @@ SaddleReport Controller::follow_once(double length, StepReport& report) {
       problem_at, length, load_weight * context_.system().length(),
       saddle_options(context_.options, Allowance{patience, patience}), trial.x, trial.lambda, t,
       context_.layout.of_scheme(state.extra));
-  add_solve(report, r);
+  add(report, r);
   if (r.status == SaddleStatus::converged && stepper_.end().admits_cells(trial.x, r)) {
     stepper_.take_equilibrium(t);
     stepper_.end().describe(r, 0, report);
@@ -369,7 +415,6 @@ SaddleReport Controller::follow_once(double length, StepReport& report) {
 }
 
 StepReport Controller::follow(double length) {
-  constexpr int most_halvings = 10;
   const State& state = context_.state;
   if (!context_.methods.path_follower()) {
     return invalid_step("follow: the scheme of this world is " +
@@ -379,8 +424,11 @@ StepReport Controller::follow(double length) {
   }
   if (!(length > 0) || !std::isfinite(length)) return invalid_step(bad_length("follow", length), state.t);
   if (interrupt_.requested()) return cancelled();
-  const Clock clock(context_.methods.chosen().seconds());
-  StepReport report;
+  return within_memory("follow", true, [&](StepReport& report) { follow_by(length, report); });
+}
+
+void Controller::follow_by(double length, StepReport& report) {
+  constexpr int most_halvings = 10;
   SaddleReport r;
   for (int halving = 0; halving <= most_halvings; ++halving, length *= 0.5) {
     r = follow_once(length, report);
@@ -392,12 +440,10 @@ StepReport Controller::follow(double length) {
     take_cancel(report);
   } else if (r.status != SaddleStatus::converged) {
     report.status = StepStatus::rejected;
-    report.reason = "no equilibrium found along the path from t = " + number(state.t) + ": " +
+    report.reason = "no equilibrium found along the path from t = " + number(context_.state.t) + ": " +
                     std::string(to_string(r.status)) + (r.message.empty() ? "" : " (" + r.message + ")") +
                     "; the path may end here (loads that do not change any more, a fold with contact)";
   }
-  finish(clock, report);
-  return report;
 }
 
 }  // namespace isochor

@@ -11,7 +11,9 @@ namespace isochor {
 
 class Controller {
  public:
-  Controller(const StepContext& context, Amounts& amounts, Interrupt& interrupt);
+  // `settled`: the last state that a step arrived at in balance, while the present one is unfinished.
+  Controller(const StepContext& context, Amounts& amounts, Interrupt& interrupt,
+             std::optional<State>& settled);
 
   // As in World.
   StepReport step(double h, const StepBudget& budget);
@@ -19,14 +21,12 @@ class Controller {
   StepReport follow(double length);
 
   Stepper& stepper() { return stepper_; }
-  // The last state that a step arrived at in balance, while the present one is unfinished.
-  std::optional<State>& settled() { return settled_; }
 
  private:
   struct Advance;
   struct Clock;
   double largest_turn(double t0, double t1) const;
-  double largest_entry(double t0, double t1);
+  double largest_intrusion(double t0, double t1);
   void begin_amounts(double t0, double t1);
   SaddleReport attempt_within(double h, const StepBudget& budget);
   void describe_single(const SaddleReport& solve, double t_target, StepReport& report);
@@ -39,6 +39,13 @@ class Controller {
   void give_up(Advance& a, double dt, const SaddleReport& solve, bool hopeless);
   bool give_back_unfinished(StepReport& report);
   SaddleReport follow_once(double length, StepReport& report);
+  template <class Steps>
+  StepReport within_memory(const char* call, bool once, Steps&& steps);
+  bool give_back_memory(double t0, bool was_settled);
+  void add(StepReport& total, const SaddleReport& r);
+  void step_once(double h, const StepBudget& budget, StepReport& report);
+  void advance_by(double h, StepReport& report);
+  void follow_by(double length, StepReport& report);
   void take_cancel(StepReport& report);
   StepReport cancelled();
   void finish(const Clock& clock, StepReport& report);
@@ -48,9 +55,10 @@ class Controller {
   Interrupt& interrupt_;
   Stepper stepper_;
   TimeError time_error_;
+  std::optional<State>& settled_;
   std::vector<double> amounts_before_;
-  std::optional<State> settled_;
-  std::vector<Vec3> ahead_;  // where velocities carry the nodes
+  std::vector<Vec3> ahead_;                              // where velocities carry the nodes
+  bool amounts_began_ = false, memory_ran_out_ = false;  // in the step under way
 };
 
 }  // namespace isochor

@@ -110,7 +110,7 @@ std::string EndCheck::energy_gained(double h, const Trial& trial, const StoredEn
 bool EndCheck::may_stay_unfinished(const StoredEnergy& stored, SaddleReport& report) const {
   const bool bounds = context_.system().has_bounds();
   const bool flatter =
-      verdict_.min_J < (bounds ? nearly_flat_with_bounds : nearly_flat) && verdict_.min_J < look().min_J;
+      verdict_.min_J < (bounds ? nearly_flat_with_bounds : nearly_flat) && verdict_.min_J < judge_state().min_J;
   std::string why;
   if (flatter)
     why = "its iterate crushes cells to J = " + number(verdict_.min_J);
@@ -124,7 +124,7 @@ bool EndCheck::may_stay_unfinished(const StoredEnergy& stored, SaddleReport& rep
 }
 
 bool EndCheck::admits_cells(std::span<const Vec3> x, SaddleReport& report) {
-  verdict_ = admission_.look(context_.state.x, x);
+  verdict_ = admission_.judge(context_.state.x, x);
   if (verdict_.forbidden == 0) return true;
   report.status = SaddleStatus::inadmissible;
   report.message = admission_.refusal(verdict_);

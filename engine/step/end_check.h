@@ -27,7 +27,7 @@ class EndCheck {
   // way there stays. `moved`: farthest way of a node in that increment [m].
   void describe(const SaddleReport& solve, double moved, StepReport& report);
   // Of the present state.
-  Admission::Verdict look() const { return admission_.look(context_.state.x, context_.state.x); }
+  Admission::Verdict judge_state() const { return admission_.judge(context_.state.x, context_.state.x); }
 
  private:
   bool moved_from_outside(const SaddleProblem& problem);

@@ -10,7 +10,7 @@ Impacts::Impacts(const StepContext& context) : context_(context) {
   row_work_.resize(2 * at(context_.system().rows()));
 }
 
-bool Impacts::look(double t, double h, Trial& trial) {
+bool Impacts::jump(double t, double h, Trial& trial) {
   if (row_work_.empty()) return false;
   const State& state = context_.state;
   const System& system = context_.system();

@@ -11,7 +11,7 @@ class Impacts {
 
   // Asks rows for jumps in an increment that is evaluated at t, h after its beginning; true when there are
   // any, which trial.x holds then [m/s]. trial.predicted is overwritten.
-  bool look(double t, double h, Trial& trial);
+  bool jump(double t, double h, Trial& trial);
   // In place of what the time scheme keeps: an increment that begins with a jump has no past.
   std::span<const double> no_past() const { return no_past_; }
 

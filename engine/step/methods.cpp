@@ -59,9 +59,15 @@ Result<Methods::Renewed> Methods::renew(SystemParts parts) {
   // Methods that sort rows by their numbers are made anew.
   if (same && !climbs(options_.method) && options_.method != Method::position_based) {
     // All who work with the system look at this one.
-    *system_ = std::move(*system);
-    chosen_->take_new_numbers();
-    list_stand_ins();
+    std::swap(*system_, *system);
+    try {
+      chosen_->take_new_numbers();
+      list_stand_ins();
+    } catch (...) {
+      std::swap(*system_, *system);
+      drop();
+      throw;
+    }
     return Renewed::numbers;
   }
   const StageSeconds spent = chosen_->seconds();
@@ -101,7 +107,6 @@ Result<std::shared_ptr<System>> Methods::compile_system(SystemParts parts, const
 }
 
 // What replaces a system of the same unknowns works in its memory: fresh pages cost more than all else here.
-// Should that run out, there is no way back.
 std::unique_ptr<LinearSolver> Methods::release_solver(std::unique_ptr<LinearSolver>& unsymmetric) {
   auto solver = chosen_->release_solver();
   unsymmetric = chosen_->release_unsymmetric();
@@ -128,22 +133,50 @@ Result<void> Methods::make(SystemParts parts, bool keep_solvers, const System* l
   return make_for(std::move(compiled).value(), prefer_iterative, keep_solvers);
 }
 
-Result<void> Methods::make_for(std::shared_ptr<System> system, bool prefer_iterative, bool keep_solvers) {
+SolverWishes Methods::wishes(bool prefer_iterative) const {
   SolverWishes wishes;
-  wishes.prefer_iterative = prefer_iterative && !system->couples();
+  wishes.prefer_iterative = prefer_iterative;
   // Next to a limit point the sign of a vanishing eigenvalue counts.
   wishes.single_precision = !options_.scheme->follows_paths();
+  return wishes;
+}
+
+Result<void> Methods::make_for(std::shared_ptr<System> system, bool prefer_iterative, bool keep_solvers) {
   std::unique_ptr<LinearSolver> solver, unsymmetric;
-  if (!keep_solvers) solver = make_linear_solver(options_.solver, wishes);
+  if (!keep_solvers)
+    solver = make_linear_solver(options_.solver, wishes(prefer_iterative && !system->couples()));
   if (!keep_solvers && !solver)
     return Error{"world: this build does not have the linear solver that is asked for"};
+  std::string counts = count_rows(*system);
   if (keep_solvers) solver = release_solver(unsymmetric);
-  system_ = std::move(system);
-  if (system_->couples() && !unsymmetric) unsymmetric = make_unsymmetric_solver(options_.solver);
+  system_.swap(system);
+  try {
+    if (system_->couples() && !unsymmetric) unsymmetric = make_unsymmetric_solver(options_.solver);
+    list_stand_ins();
+    make_chosen(std::move(solver), std::move(unsymmetric));
+  } catch (...) {
+    system_.swap(system);
+    drop();
+    throw;
+  }
+  counts_ = std::move(counts);
+  return {};
+}
+
+void Methods::drop() {
+  path_follower_ = nullptr;
+  chosen_.reset();
+  made_.clear();
+  stand_ins_.clear();
+}
+
+void Methods::remake() {
+  const bool prefer_iterative = large(system_->parts()) && !system_->couples();
+  auto solver = make_linear_solver(options_.solver, wishes(prefer_iterative));
+  std::unique_ptr<LinearSolver> unsymmetric;
+  if (system_->couples()) unsymmetric = make_unsymmetric_solver(options_.solver);
   list_stand_ins();
   make_chosen(std::move(solver), std::move(unsymmetric));
-  counts_ = count_rows(*system_);
-  return {};
 }
 
 void Methods::make_chosen(std::unique_ptr<LinearSolver> solver, std::unique_ptr<LinearSolver> unsymmetric) {

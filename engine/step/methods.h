@@ -22,8 +22,12 @@ class Methods {
   // else with a system of its own, which takes over the solvers. On an error all is as it was.
   enum class Renewed : std::uint8_t { numbers, structure };
   Result<Renewed> renew(SystemParts parts);
-  // Whether there is a method; it is lost where memory runs out while stencils are replaced.
+  // Whether there is a method. Where memory runs out in the middle of a solve, or while stencils are
+  // replaced, it is dropped: what it holds follows from the system and the state, and remake() makes it
+  // again.
   bool ready() const { return chosen_ != nullptr; }
+  void drop();
+  void remake();
 
   const System& system() const { return *system_; }
   SaddlePoint& chosen() { return *chosen_; }
@@ -46,6 +50,7 @@ class Methods {
   Result<void> make_for(std::shared_ptr<System> system, bool prefer_iterative, bool keep_solvers);
   void list_stand_ins();
   Result<std::shared_ptr<System>> compile_system(SystemParts parts, const System* like) const;
+  SolverWishes wishes(bool prefer_iterative) const;
   std::unique_ptr<LinearSolver> release_solver(std::unique_ptr<LinearSolver>& unsymmetric);
   void make_chosen(std::unique_ptr<LinearSolver> solver, std::unique_ptr<LinearSolver> unsymmetric);
   bool large(const SystemParts& parts) const;

@@ -183,7 +183,7 @@ Stepper::Attempt Stepper::begin(double h) {
   a.h = h;
   const double h_evaluated = scheme.evaluated_at() * h, t_new = state.t + h_evaluated;
   a.problem = context_.data.problem(context_.system(), state, t_new);
-  a.jumps = impacts_.look(t_new, h_evaluated, trial_);
+  a.jumps = impacts_.jump(t_new, h_evaluated, trial_);
   const std::span<const double> past =
       a.jumps ? impacts_.no_past() : std::span<const double>(context_.layout.of_scheme(state.extra));
   a.problem.mass_scale = scheme.begin(state, past, h, trial_.predicted);

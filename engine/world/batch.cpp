@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "engine/base/out_of_memory.h"
 #include "engine/base/parallel.h"
 
 namespace isochor {
@@ -51,7 +52,7 @@ WorldBatch::WorldBatch(WorldBatch&&) noexcept = default;
 WorldBatch& WorldBatch::operator=(WorldBatch&&) noexcept = default;
 WorldBatch::~WorldBatch() = default;
 
-Result<WorldBatch> WorldBatch::create(const World& world, Index count, int threads) {
+Result<WorldBatch> WorldBatch::create(const World& world, Index count, int threads) try {
   constexpr Index most = 1 << 20;
   if (count < 1 || count > most) {
     return Error{"batch: " + std::to_string(count) + " worlds; give 1 to " + std::to_string(most)};
@@ -66,6 +67,8 @@ Result<WorldBatch> WorldBatch::create(const World& world, Index count, int threa
     impl->worlds.push_back(std::move(clone).value());
   }
   return WorldBatch(std::move(impl));
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("batch")};
 }
 
 Index WorldBatch::size() const {
@@ -88,7 +91,7 @@ std::vector<StepReport> WorldBatch::step(double h, const StepBudget& budget) {
   return impl_->stepped([&](World& world) { return world.step(h, budget); });
 }
 
-Result<void> WorldBatch::reset(std::span<const std::uint8_t> marked) {
+Result<void> WorldBatch::reset(std::span<const std::uint8_t> marked) try {
   if (!marked.empty() && marked.size() != impl_->worlds.size()) {
     return Error{"reset: " + std::to_string(marked.size()) + " marks for " +
                  std::to_string(impl_->worlds.size()) + " worlds; give one a world, or none for all"};
@@ -102,9 +105,11 @@ Result<void> WorldBatch::reset(std::span<const std::uint8_t> marked) {
     if (!errors[w].empty()) return Error{"world " + std::to_string(w) + ": " + errors[w]};
   }
   return {};
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("reset")};
 }
 
-Result<void> WorldBatch::set_amounts(EffectId effect, std::span<const double> amounts) {
+Result<void> WorldBatch::set_amounts(EffectId effect, std::span<const double> amounts) try {
   if (amounts.size() != impl_->worlds.size()) {
     return Error{"set_amounts: " + std::to_string(amounts.size()) + " amounts for " +
                  std::to_string(impl_->worlds.size()) + " worlds; give one a world"};
@@ -118,6 +123,8 @@ Result<void> WorldBatch::set_amounts(EffectId effect, std::span<const double> am
       return Error{"world " + std::to_string(w) + ": " + r.error()};
   }
   return {};
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("set_amounts")};
 }
 
 Result<void> WorldBatch::positions(BodyId body, std::span<Vec3> out) const {

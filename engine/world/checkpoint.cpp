@@ -8,6 +8,7 @@
 
 #include "engine/base/bytes.h"
 #include "engine/base/fingerprint.h"
+#include "engine/base/out_of_memory.h"
 #include "engine/base/text.h"
 #include "engine/step/time_scheme.h"
 #include "engine/world/world_impl.h"
@@ -169,22 +170,23 @@ Result<Content> read(std::span<const std::byte> bytes) {
 
 const std::vector<ScenePart>& World::Impl::scene_parts() {
   if (!described.empty()) return described;
-  describe_options(options, described);
+  std::vector<ScenePart> parts;
+  describe_options(options, parts);
   for (const BodyData& body : said.builder.bodies()) {
-    if (body.present()) describe_body(body, described);
+    if (body.present()) describe_body(body, parts);
   }
   for (const Index e : said.order) {
     const EffectPtr& source = said.sources[at(e)];
-    described.push_back({"effect \"" + source->name() + "\"", Fingerprint().add(source).value()});
+    parts.push_back({"effect \"" + source->name() + "\"", Fingerprint().add(source).value()});
   }
-  return described;
+  return described = std::move(parts);
 }
 
 std::vector<std::byte> World::save() const {
   Impl& w = *impl_;
   if (!w.ready()) return {};
   Content content{w.scene_parts(), moment_of(w.state), {}, w.state.reactions, w.state.forces, {}};
-  const std::optional<State>& settled = w.controller->settled();
+  const std::optional<State>& settled = w.settled;
   if (settled) content.settled.push_back(moment_of(*settled));
   w.amounts.save(content.amounts);
   ByteWriter out;
@@ -211,7 +213,7 @@ Result<void> World::Impl::check_moment(const M& m) const {
   return {};
 }
 
-Result<void> World::load(std::span<const std::byte> bytes) {
+Result<void> World::load(std::span<const std::byte> bytes) try {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return r;
   auto content = read(bytes);
@@ -232,15 +234,18 @@ Result<void> World::load(std::span<const std::byte> bytes) {
     if (auto r = w.check_moment(c.settled.front()); !r) return r;
   }
   if (!w.amounts.fit(c.amounts)) return damaged("its amounts are none of these effects");
+  State next = state_of(std::move(c.now), c.reactions, c.forces);
+  std::optional<State> settled;
+  if (!c.settled.empty()) settled = state_of(std::move(c.settled.front()), c.reactions, c.forces);
   const auto stencils = w.controller->stepper().surroundings().restore(
-      std::span<const double>(c.now.extra).first(w.layout.pools));
+      std::span<const double>(next.extra).first(w.layout.pools));
   if (!stencils) return damaged(stencils.error());
   w.amounts.load(c.amounts);
-  w.take_over(state_of(std::move(c.now), c.reactions, c.forces));
-  std::optional<State>& settled = w.controller->settled();
-  settled.reset();
-  if (!c.settled.empty()) settled = state_of(std::move(c.settled.front()), c.reactions, c.forces);
+  w.take_over(std::move(next));
+  w.settled = std::move(settled);
   return {};
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("load")};
 }
 
 std::uint64_t World::state_hash() const {

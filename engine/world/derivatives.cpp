@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/out_of_memory.h"
 #include "engine/base/text.h"
 #include "engine/scene/embedding.h"
 #include "engine/world/world_impl.h"
@@ -212,10 +213,10 @@ Result<Response> World::Impl::derivative(Derivatives& d, Amount* amount, PointIn
   return out;
 }
 
-Result<std::vector<Response>> World::derivatives(std::span<const ResponseInput> inputs) {
+Result<std::vector<Response>> World::derivatives(std::span<const ResponseInput> inputs) try {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return Error{r.error()};
-  if (w.controller->settled()) {
+  if (w.settled) {
     return Error{"derivatives: the state is unfinished, no equilibrium; take a step without a budget first"};
   }
   Impl::Derivatives d(w);
@@ -250,6 +251,9 @@ Result<std::vector<Response>> World::derivatives(std::span<const ResponseInput> 
     r.unstable_directions = found < 0 ? -1 : found - wanted;
   }
   return all;
+} catch (const std::bad_alloc&) {
+  impl_->methods.drop();
+  return Error{out_of_memory("derivatives")};
 }
 
 }  // namespace isochor

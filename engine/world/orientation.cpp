@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "engine/base/out_of_memory.h"
 #include "engine/mesh/cell_shape.h"
 #include "engine/world/world_impl.h"
 
@@ -153,7 +154,7 @@ Error without_rotation(std::size_t nodes, const char* when) {
 
 }  // namespace
 
-Result<Orientation> World::orientation(const Selection& where) const {
+Result<Orientation> World::orientation(const Selection& where) const try {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return Error{r.error()};
   const auto selected = w.said.builder.select(where, "orientation");
@@ -186,6 +187,8 @@ Result<Orientation> World::orientation(const Selection& where) const {
   }
   out.misfit = std::sqrt(out.misfit);
   return out;
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("orientation")};
 }
 
 }  // namespace isochor

@@ -6,6 +6,9 @@
 //   stencils     those that change with what is close, as the state remembers them
 //   methods      go on with other numbers, or with another structure (Methods::renew)
 //   take over    amounts and poses that the host has set, the state, and who makes steps
+//
+// Where memory runs out before methods have gone on, all is as it was. What comes after that takes none, but
+// who makes steps, whom the next call makes then (World::Impl::mend).
 #include <algorithm>
 
 #include "engine/base/stopwatch.h"
@@ -77,19 +80,22 @@ Result<void> World::Impl::renew() {
     for (const auto& rows : facets.remembering_rows) rows.facet->start(rows.in(std::span(memory)));
     const Moving::After after{parts.rest, memory, next_layout, *options.scheme};
     State moved = moving.moved(state, layout, after);
-    std::optional<State> settled;
-    if (controller->settled()) settled = moving.moved(*controller->settled(), layout, after);
+    std::optional<State> moved_settled;
+    if (settled) moved_settled = moving.moved(*settled, layout, after);
     auto first = facets.renewed.empty() ? decltype(first_stencils){} : parts.stencil_pools;
     if (auto r =
             restore_stencils(facets, std::span<const double>(moved.extra).first(next_layout.pools), parts);
         !r)
       return r;
+    carry_settings(instances, said, built.value().instances, next);
+    // Views of bodies that are gone are not to show others.
+    const bool other_nodes =
+        said.builder.body_slots() != next.builder.body_slots() || state.x.size() != moved.x.size();
+    auto new_views = std::make_shared<LeftViews>();
     const auto renewed = methods.renew(std::move(parts));
     if (!renewed) return Error{renewed.error()};
 
-    // Views of bodies that are gone are not to show others.
-    if (said.builder.body_slots() != next.builder.body_slots()) leave_views();
-    carry_settings(instances, said, built.value().instances, next);
+    if (other_nodes) leave_views(std::move(new_views));
     instances = std::move(built.value().instances);
     held_by = std::move(built.value().held_by);
     said = std::move(next);
@@ -97,10 +103,11 @@ Result<void> World::Impl::renew() {
     described.clear();
     layout = next_layout;
     take_over(std::move(moved));
-    make_controller();
-    controller->settled() = std::move(settled);
+    settled = std::move(moved_settled);
     report.work =
         renewed.value() == Methods::Renewed::numbers ? CompileWork::numbers : CompileWork::structure;
+    controller.reset();
+    make_controller();
     tell_idle_rows();
   }
   compile_report = report;
@@ -120,12 +127,13 @@ Result<void> World::Impl::compile_like(Impl& other) {
   held_by = std::move(built.value().held_by);
   if (auto r = methods.choose(std::move(parts), &other.system()); !r) return r;
   begin_state();
+  make_controller();
   state = other.state;
   std::vector<double> set;
   other.amounts.save(set);
   amounts.load(set);
   data->evaluate(system(), state.t);
-  controller->settled() = other.controller->settled();
+  settled = other.settled;
   compile_report.work = CompileWork::structure;
   return {};
 }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <map>
 #include <utility>
 
+#include "engine/base/out_of_memory.h"
 #include "engine/base/stopwatch.h"
 #include "engine/base/text.h"
 #include "engine/step/step_report.h"
@@ -25,7 +27,7 @@ Result<World> World::create(WorldOptions options, std::uint64_t abi) {
   return create(std::move(options), {}, abi);
 }
 
-Result<World> World::create(WorldOptions options, Host host, std::uint64_t abi) {
+Result<World> World::create(WorldOptions options, Host host, std::uint64_t abi) try {
   if (abi != kWorldAbi) {
     return Error{
         "this program was built against other headers than the library, or with other settings of the "
@@ -79,31 +81,39 @@ Result<World> World::create(WorldOptions options, Host host, std::uint64_t abi) 
   else
     parallel = std::make_unique<TbbParallel>(options.threads);
   return World(std::make_unique<Impl>(std::move(options), std::move(parallel)));
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("create")};
 }
 
 Description& World::Impl::open_draft() {
-  if (!compiled()) return said;
+  if (!scene_made()) return said;
   if (!draft) draft = Description{said.builder.again(), said.places, said.sources, said.order};
   return *draft;
 }
 
-Result<BodyId> World::add_body(BodyDef body) {
+Result<BodyId> World::add_body(BodyDef body) try {
   Builder& builder = impl_->open_draft().builder;
   auto place = builder.add_body(body);
   if (!place) return Error{place.error()};
   return WorldNumbers::make<BodyTag>(place.value(), builder.world(),
                                      builder.body_slots().generation(place.value()));
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("add_body")};
 }
 
-Result<EffectId> World::add(EffectPtr effect) {
+Result<EffectId> World::add(EffectPtr effect) try {
   if (!effect) return Error{"world: an empty effect was added"};
   if (auto r = effect->check(); !r) return Error{r.error()};
   Description& d = impl_->open_draft();
+  d.sources.reserve(at(d.places.size()) + 1);
+  d.order.reserve(d.order.size() + 1);
   const Index place = d.places.take();
   d.sources.resize(at(d.places.size()));
   d.sources[at(place)] = std::move(effect);
   d.order.push_back(place);
   return WorldNumbers::make<EffectTag>(place, d.builder.world(), d.places.generation(place));
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("add")};
 }
 
 namespace {
@@ -135,21 +145,65 @@ const BodyData* World::Impl::find_body(BodyId body, const char* call) {
   if (draft) (void)ready();
   const std::string why = no_such(body, "body", said.builder.body_slots(), said.builder);
   if (why.empty()) return &said.builder.body(body);
-  if (options.log) options.log(std::string(call) + ": " + why);
+  tell(std::string(call) + ": " + why);
   return nullptr;
+}
+
+void World::Impl::tell(const std::string& refusal) {
+  if (options.log)
+    options.log(refusal);
+  else
+    std::fprintf(stderr, "isochor: %s\n", refusal.c_str());
 }
 
 Result<void> World::Impl::compile() {
   if (!compile_error.empty()) {
     // Of a first attempt the reason stays. What a change failed for is told once: it was taken back.
-    if (!compiled()) return Error{compile_error};
+    if (!scene_made()) return Error{compile_error};
     return Error{std::exchange(compile_error, {})};
   }
   if (compiled() && !draft) return {};
-  if (controller && !compiled())
-    return Error{"world: memory ran out when stencils were replaced; make the world anew"};
+  try {
+    if (scene_made()) {
+      if (auto r = mend(); !r || !draft) return r;
+    }
+    return compile_now();
+  } catch (const std::bad_alloc&) {
+    if (!scene_made()) used_up = true;
+    return Error{out_of_memory("compile")};
+  }
+}
+
+// What memory did not suffice for, behind a scene that is there: who solves, with the stencils of the state,
+// and who makes steps.
+Result<void> World::Impl::mend() {
+  const bool dropped = !methods.ready();
+  if (dropped) methods.remake();
+  if (!controller) make_controller();
+  return dropped ? put_stencils_back() : Result<void>{};
+}
+
+// Those of the state, or none at all.
+Result<void> World::Impl::put_stencils_back() try {
+  auto restored = controller->stepper().surroundings().restore(pool_memory());
+  if (!restored) methods.drop();
+  return restored;
+} catch (const std::bad_alloc&) {
+  methods.drop();
+  throw;
+}
+
+Result<void> World::Impl::compile_now() {
+  if (used_up) {
+    said.builder = said.builder.again();
+    used_up = false;
+  }
   const std::vector<std::string> told = compiled() ? said.builder.warnings() : std::vector<std::string>();
   const auto result = compiled() ? renew() : compile_first();
+  if (result) {
+    untold.work = std::max(untold.work, compile_report.work);
+    untold.seconds += compile_report.seconds;
+  }
   for (const std::string& warning : said.builder.warnings()) {
     const bool known = std::find(told.begin(), told.end(), warning) != told.end();
     if (options.log && !known) options.log(warning);
@@ -163,9 +217,9 @@ Result<void> World::Impl::compile() {
 
 bool World::Impl::ready() {
   if (compiled() && !draft) return true;
-  if (auto r = compile(); !r && compiled()) {
+  if (auto r = compile(); !r && scene_made()) {
     if (options.log) options.log(r.error());
-    compile_error = r.error();
+    if (compiled()) compile_error = r.error();
   }
   return compiled();
 }
@@ -205,6 +259,7 @@ Result<void> World::Impl::compile_first() {
   if (system().renews_stencils()) first_stencils = system().parts().stencil_pools;
   begin_state();
   compile_report.work = CompileWork::structure;
+  make_controller();
   return {};
 }
 
@@ -252,9 +307,8 @@ std::vector<double> gravity_mass(const Builder& builder, const SystemParts& part
   return weight;
 }
 
-// Views of positions stay good where nodes are as many as before; others are left to who keeps them.
-void World::Impl::take_over(State&& next) {
-  if (!state.x.empty() && state.x.size() != next.x.size()) leave_views();
+// Views of positions stay good where nodes are as many as before; others are left to who keeps them first.
+void World::Impl::take_over(State&& next) noexcept {
   const auto keep = [](std::vector<Vec3>& present, std::vector<Vec3>& list) {
     if (present.size() != list.size()) return;
     std::copy(list.begin(), list.end(), present.begin());
@@ -281,14 +335,13 @@ void World::Impl::begin_state() {
   rest.extra.assign(layout.size(), 0.0);
   system().start_memory(std::span(rest.extra).first(layout.pools));
   take_over(std::move(rest));
-  make_controller();
 }
 
 void World::Impl::make_controller() {
   data.emplace(system(), amounts.gravity, state, gravity_mass(said.builder, system().parts(), options));
   controller.emplace(
       StepContext{options, said.builder.bodies(), *parallel, methods, *data, state, layout, first_stencils},
-      amounts, interrupt);
+      amounts, interrupt, settled);
   controller->stepper().on_progress(progress);
 }
 
@@ -296,7 +349,7 @@ Result<void> World::compile() {
   return impl_->compile();
 }
 
-Result<void> World::set_amount(EffectId effect, double amount) {
+Result<void> World::set_amount(EffectId effect, double amount) try {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return r;
   if (auto r = check(effect); !r) return Error{"set_amount: " + r.error()};
@@ -309,14 +362,15 @@ Result<void> World::set_amount(EffectId effect, double amount) {
   }
   a->set(amount);
   return {};
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("set_amount")};
 }
 
 template <class Step>
 StepReport World::Impl::after_compile(Step&& step) {
-  const bool waits = draft || !compiled();
   if (auto r = compile(); !r) return invalid_step(r.error(), state.t);
   StepReport report = step();
-  if (waits) report.compiled = compile_report;
+  report.compiled = std::exchange(untold, {});
   return report;
 }
 

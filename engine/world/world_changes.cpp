@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/fingerprint.h"
+#include "engine/base/out_of_memory.h"
 #include "engine/base/text.h"
 #include "engine/scene/embedding.h"
 #include "engine/world/world_impl.h"
@@ -29,25 +30,29 @@ bool names_body(const EffectSource& effect, Index number) {
 
 }  // namespace
 
-Result<void> World::replace(EffectId effect, EffectPtr with) {
+Result<void> World::replace(EffectId effect, EffectPtr with) try {
   if (auto r = check(effect); !r) return Error{"replace: " + r.error()};
   if (!with) return Error{"replace: the new effect is empty"};
   if (auto r = with->check(); !r) return Error{"replace: " + r.error()};
   impl_->open_draft().sources[static_cast<std::size_t>(effect)] = std::move(with);
   return {};
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("replace")};
 }
 
-Result<void> World::remove(EffectId effect) {
+Result<void> World::remove(EffectId effect) try {
   if (auto r = check(effect); !r) return Error{"remove: " + r.error()};
   Description& d = impl_->open_draft();
   const auto place = static_cast<Index>(effect);
+  d.places.release(place);
   d.sources[at(place)] = nullptr;
   d.order.erase(std::find(d.order.begin(), d.order.end(), place));
-  d.places.release(place);
   return {};
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("remove")};
 }
 
-Result<void> World::remove(BodyId body) {
+Result<void> World::remove(BodyId body) try {
   if (auto r = check(body); !r) return Error{"remove: " + r.error()};
   const auto place = body == BodyId{} ? Index{0} : static_cast<Index>(body);
   const Description& now = impl_->latest();
@@ -58,16 +63,22 @@ Result<void> World::remove(BodyId body) {
   }
   impl_->open_draft().builder.remove_body(place);
   return {};
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("remove")};
 }
 
-Result<void> World::set_material(BodyId body, const std::string& region, MaterialPtr material) {
+Result<void> World::set_material(BodyId body, const std::string& region, MaterialPtr material) try {
   if (auto r = check(body); !r) return Error{"set_material: " + r.error()};
   return impl_->open_draft().builder.set_material(body, region, material);
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("set_material")};
 }
 
-Result<void> World::set_density(BodyId body, const std::string& region, double density) {
+Result<void> World::set_density(BodyId body, const std::string& region, double density) try {
   if (auto r = check(body); !r) return Error{"set_density: " + r.error()};
   return impl_->open_draft().builder.set_density(body, region, density);
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("set_density")};
 }
 
 Result<void> World::set_gravity(const Vec3& gravity) {
@@ -77,7 +88,7 @@ Result<void> World::set_gravity(const Vec3& gravity) {
   return {};
 }
 
-Result<void> World::set_pose(EffectId effect, const Pose& pose) {
+Result<void> World::set_pose(EffectId effect, const Pose& pose) try {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return r;
   if (auto r = check(effect); !r) return Error{"set_pose: " + r.error()};
@@ -91,9 +102,11 @@ Result<void> World::set_pose(EffectId effect, const Pose& pose) {
     return Error{"set_pose: effect \"" + w.said.sources[i]->name() + "\": " + r.error()};
   p->set(pose);
   return {};
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("set_pose")};
 }
 
-Result<void> World::set_forces(BodyId body, std::span<const Vec3> forces) {
+Result<void> World::set_forces(BodyId body, std::span<const Vec3> forces) try {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return r;
   if (auto r = check(body); !r) return Error{"set_forces: " + r.error()};
@@ -110,9 +123,11 @@ Result<void> World::set_forces(BodyId body, std::span<const Vec3> forces) {
   w.state.forces.resize(w.state.x.size());
   std::copy(forces.begin(), forces.end(), w.state.forces.begin() + b.first_node);
   return {};
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("set_forces")};
 }
 
-Result<void> World::add_force(BodyId body, Index node, const Vec3& force) {
+Result<void> World::add_force(BodyId body, Index node, const Vec3& force) try {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return r;
   if (auto r = check(body); !r) return Error{"add_force: " + r.error()};
@@ -125,9 +140,11 @@ Result<void> World::add_force(BodyId body, Index node, const Vec3& force) {
   w.state.forces.resize(w.state.x.size());
   w.state.forces[at(b.first_node + node)] += force;
   return {};
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("add_force")};
 }
 
-Result<void> World::add_force_at(BodyId body, const Vec3& point, const Vec3& force) {
+Result<void> World::add_force_at(BodyId body, const Vec3& point, const Vec3& force) try {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return r;
   if (auto r = check(body); !r) return Error{"add_force_at: " + r.error()};
@@ -141,22 +158,28 @@ Result<void> World::add_force_at(BodyId body, const Vec3& point, const Vec3& for
   const PointInBody& p = found.value();
   for (std::size_t k = 0; k < p.nodes.size(); ++k) w.state.forces[at(p.nodes[k])] += p.weight[k] * force;
   return {};
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("add_force_at")};
 }
 
 void World::clear_forces() {
   impl_->state.forces.clear();
 }
 
-Result<void> World::reset() {
+Result<void> World::reset() try {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return r;
-  w.controller->settled().reset();
-  w.amounts.forget();
   w.begin_state();
-  return w.controller->stepper().surroundings().restore(w.pool_memory());
+  w.settled.reset();
+  w.amounts.forget();
+  w.data->evaluate(w.system(), w.state.t);
+  // Should memory run out here, the world is reset and its stencils follow with the next call.
+  return w.put_stencils_back();
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("reset")};
 }
 
-Result<World> World::clone(int threads) const {
+Result<World> World::clone(int threads) const try {
   Impl& w = *impl_;
   if (threads < 0 || threads > 1024) {
     return Error{"clone: threads = " + std::to_string(threads) +
@@ -172,6 +195,8 @@ Result<World> World::clone(int threads) const {
   impl->said = {w.said.builder.again(), w.said.places, w.said.sources, w.said.order};
   if (auto r = impl->compile_like(w); !r) return Error{r.error()};
   return World(std::move(impl));
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("clone")};
 }
 
 const CompileReport& World::compile_report() const {

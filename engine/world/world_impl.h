@@ -17,7 +17,7 @@ struct ScenePart {
 
 // Positions and velocities that a world has no more use for and that a host still looks at.
 struct LeftViews {
-  std::vector<std::vector<Vec3>> numbers;
+  std::vector<Vec3> x, v;
 };
 
 struct World::Impl {
@@ -29,7 +29,7 @@ struct World::Impl {
     said.builder.set_world(WorldNumbers::next_world());
     methods.set_interrupt([this] { return interrupt.raised(); });
   }
-  ~Impl() { leave_views(); }
+  ~Impl() { leave_views(nullptr); }
 
   // What the host said.
   WorldOptions options;
@@ -46,6 +46,7 @@ struct World::Impl {
   Methods methods;
   std::string compile_error;
   CompileReport compile_report;
+  CompileReport untold;              // of all compilations since the last step
   std::vector<ScenePart> described;  // made when first asked for
 
   // What survives a step, and who makes steps; made by compile(). x and v stay where they are, see
@@ -55,16 +56,21 @@ struct World::Impl {
   StateLayout layout;
   // That the scene begins with, where stencils change with what is close.
   std::vector<std::shared_ptr<const StencilPool>> first_stencils;
+  std::optional<State> settled;  // as in Controller
   std::optional<IncrementData> data;
   std::optional<Controller> controller;
 
+  // Whether the scene is there, and who solves and makes steps; only where memory ran out it may be there
+  // alone.
+  bool scene_made() const { return !state.x.empty(); }
   bool compiled() const { return controller && methods.ready(); }
   // What changes are made to.
   Description& open_draft();
   const Description& latest() const { return draft ? *draft : said; }
-  // Null, and a line in the log, where an id leads nowhere; `call` is who was asked. Changes that wait are
-  // made first.
+  // Null where an id leads nowhere, which is told; `call` is who was asked. Changes that wait are made first.
   const BodyData* find_body(BodyId body, const char* call);
+  // Why a call that returns a value has none: to the log, or to standard error where there is no log.
+  void tell(const std::string& refusal);
   Result<void> compile();
   // The same for calls that only ask: whether there is a compiled scene. Why a change could not be made is
   // left for compile() and the next step to tell.
@@ -77,7 +83,7 @@ struct World::Impl {
   std::span<const double> pool_memory() const { return layout.of_pools(state.extra); }
 
   // Hands the numbers of positions and velocities to who holds World::keep_views(), if anybody does.
-  void leave_views();
+  void leave_views(std::shared_ptr<LeftViews> next) noexcept;
   // Evaluates forces and multipliers at the state.
   void evaluate_state(Want want);
   // phi - target - C lambda of all compliant rows at the state.
@@ -97,15 +103,20 @@ struct World::Impl {
 
   // The state at rest.
   void begin_state();
-  void take_over(State&& next);
+  Result<void> put_stencils_back();
+  void take_over(State&& next) noexcept;
   Result<void> compile_like(Impl& other);  // renewal.cpp
 
  private:
+  Result<void> compile_now();
   Result<void> compile_first();
   void tell_idle_rows();
   void make_controller();
+  Result<void> mend();
 
   Result<void> renew();  // renewal.cpp
+
+  bool used_up = false;  // the builder, by a first compilation for which memory did not suffice
 };
 
 }  // namespace isochor

@@ -68,7 +68,7 @@ double World::elastic_energy() const {
 
 double World::kinetic_energy() const {
   double energy = 0;
-  if (!impl_->compiled() || !impl_->ready()) return energy;
+  if (!impl_->scene_made() || !impl_->ready()) return energy;
   const std::vector<Vec3> moving = impl_->momenta();
   for (std::size_t i = 0; i < moving.size(); ++i) energy += 0.5 * dot(moving[i], impl_->state.v[i]);
   return energy;
@@ -134,7 +134,7 @@ Energies World::energies() const {
 
 std::array<Vec3, 2> World::momentum() const {
   std::array<Vec3, 2> sum{};
-  if (!impl_->compiled() || !impl_->ready()) return sum;
+  if (!impl_->scene_made() || !impl_->ready()) return sum;
   const std::vector<Vec3> moving = impl_->momenta();
   for (std::size_t i = 0; i < moving.size(); ++i) {
     sum[0] += moving[i];

@@ -29,12 +29,12 @@ std::span<const Vec3> part(const BodyData& body, const std::vector<Vec3>& all) {
 std::span<const Vec3> World::positions(BodyId body) const {
   const BodyData* b = impl_->find_body(body, "positions");
   if (!b) return {};
-  return impl_->compiled() ? part(*b, impl_->state.x) : std::span<const Vec3>(b->mesh.nodes);
+  return impl_->scene_made() ? part(*b, impl_->state.x) : std::span<const Vec3>(b->mesh.nodes);
 }
 
 std::span<const Vec3> World::velocities(BodyId body) const {
   const BodyData* b = impl_->find_body(body, "velocities");
-  if (!b || !impl_->compiled()) return {};
+  if (!b || !impl_->scene_made()) return {};
   return part(*b, impl_->state.v);
 }
 
@@ -42,12 +42,12 @@ std::shared_ptr<const void> World::keep_views() const {
   return impl_->views;
 }
 
-void World::Impl::leave_views() {
+void World::Impl::leave_views(std::shared_ptr<LeftViews> next) noexcept {
   if (views.use_count() > 1) {
-    views->numbers.push_back(std::move(state.x));
-    views->numbers.push_back(std::move(state.v));
+    views->x = std::move(state.x);
+    views->v = std::move(state.v);
   }
-  views = std::make_shared<LeftViews>();
+  views = std::move(next);
 }
 
 std::span<const Vec3> World::rest_positions(BodyId body) const {
@@ -88,7 +88,10 @@ std::vector<EffectId> World::effects() const {
 }
 const std::string& World::effect_name(EffectId effect) const {
   static const std::string none;
-  if (!check(effect)) return none;
+  if (auto r = check(effect); !r) {
+    impl_->tell("effect_name: " + r.error());
+    return none;
+  }
   return impl_->latest().sources[static_cast<std::size_t>(effect)]->name();
 }
 const std::vector<std::string>& World::warnings() const {
@@ -146,8 +149,11 @@ std::array<Vec3, 2> World::reaction(EffectId effect) const {
   std::array<Vec3, 2> sum{};
   Impl& w = *impl_;
   const auto i = static_cast<std::size_t>(effect);
-  if (auto r = check(effect); !r && w.options.log) w.options.log("reaction: " + r.error());
-  if (!check(effect) || !w.ready()) return sum;
+  if (auto r = check(effect); !r) {
+    w.tell("reaction: " + r.error());
+    return sum;
+  }
+  if (!w.ready()) return sum;
   if (i >= w.instances.size() || !w.instances[i]) return sum;
   return w.reaction_of(static_cast<Index>(i), w.state);
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/out_of_memory.h"
 #include "engine/step/time_scheme.h"
 #include "engine/world/world_impl.h"
 
@@ -25,7 +26,7 @@ Result<void> check_nodes(const char* call, const char* what, const BodyData& bod
 
 }  // namespace
 
-Result<void> World::set_velocities(BodyId body, std::span<const Vec3> velocities) {
+Result<void> World::set_velocities(BodyId body, std::span<const Vec3> velocities) try {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return r;
   if (auto r = check(body); !r) return Error{"set_velocities: " + r.error()};
@@ -33,20 +34,22 @@ Result<void> World::set_velocities(BodyId body, std::span<const Vec3> velocities
     return Error{"set_velocities: the scheme of this world is " + std::string(w.options.scheme->name()) +
                  ", in which nothing has a velocity; use a scheme of dynamics"};
   }
-  w.controller->settled().reset();  // what a host sets is where it wants to go on from
+  w.settled.reset();  // what a host sets is where it wants to go on from
   const BodyData& b = w.said.builder.body(body);
   if (auto r = check_nodes("set_velocities", "velocities", b, velocities); !r) return r;
   std::copy(velocities.begin(), velocities.end(), w.state.v.begin() + b.first_node);
   const auto past = w.layout.of_scheme(w.state.extra);
   std::fill(past.begin(), past.end(), 0.0);
   return {};
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("set_velocities")};
 }
 
-Result<void> World::set_positions(BodyId body, std::span<const Vec3> positions) {
+Result<void> World::set_positions(BodyId body, std::span<const Vec3> positions) try {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return r;
   if (auto r = check(body); !r) return Error{"set_positions: " + r.error()};
-  w.controller->settled().reset();  // what a host sets is where it wants to go on from
+  w.settled.reset();  // what a host sets is where it wants to go on from
   const BodyData& b = w.said.builder.body(body);
   if (auto r = check_nodes("set_positions", "positions", b, positions); !r) return r;
   const auto first = at(b.first_node);
@@ -61,6 +64,8 @@ Result<void> World::set_positions(BodyId body, std::span<const Vec3> positions) 
   const auto past = w.layout.of_scheme(w.state.extra);
   std::fill(past.begin(), past.end(), 0.0);
   return {};
+} catch (const std::bad_alloc&) {
+  return Error{out_of_memory("set_positions")};
 }
 
 }  // namespace isochor

@@ -48,7 +48,7 @@ struct StepReport : SolveCounters {
   std::string warning;
   double force_residual = 0, row_residual = 0, linear_residual = 0;
   StageSeconds seconds;
-  CompileReport compiled;  // of changes that waited for this step
+  CompileReport compiled;  // of all compilations since the last step, for whichever call
 };
 
 struct ProgressInfo {

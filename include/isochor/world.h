@@ -1,9 +1,9 @@
 // The facade a host embeds: build a scene from bodies and effects, advance it, read positions without
 // copying. To be read in this order: bodies.h, selection.h, effects/, options.h, this file, reports.h,
-// measures.h.
-//
-// Nothing here throws. Worlds are independent of each other; one world is used by one thread at a time,
-// except for cancel(), which any thread may call.
+// measures.h. Worlds are independent of each other; one world is used by one thread at a time, except for
+// cancel(), which any thread may call. Nothing here throws but std::bad_alloc, and that only what returns
+// neither a Result nor a StepReport, which say it: the world is as it was before a call for which memory did
+// not suffice, or where an advance had got to.
 #pragma once
 
 #include <array>
@@ -127,7 +127,7 @@ class ISOCHOR_API World {
   Result<void> set_velocities(BodyId body, std::span<const Vec3> velocities);
 
   // Whether an id leads to a body or an effect of this world; the reason names it. Calls that return a Result
-  // say the same. Those that return a value return an empty one and write the reason to the log.
+  // say the same. Those that return a value return an empty one and tell the log, or standard error.
   Result<void> check(BodyId body) const;
   Result<void> check(EffectId effect) const;
 

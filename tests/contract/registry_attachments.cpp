@@ -159,7 +159,7 @@ void add_contacts(std::vector<SceneCase>& out, Element element) {
     SceneCase c =
         on_block("contact, shape " + std::to_string(static_cast<int>(shape)), element,
                  {"constraints/contact", "constraints/rigid_geometry", "constraints/contact_frame",
-                  "constraints/contact_entry", "constraints/contact_rows", "constraints/flush_nodes",
+                  "constraints/contact_intrusion", "constraints/contact_rows", "constraints/flush_nodes",
                   "constraints/obstacle_shape", "constraints/surface_nodes", "constraints/solid",
                   "constraints/mesh_solid", "constraints/closed_surface", "constraints/field_solid"},
                  contact(def));

@@ -16,12 +16,12 @@ const std::vector<std::string> kGuarded{"engine/base",  "engine/math", "engine/s
 
 // Words that effects share with the engine: each means something there without any effect.
 const std::set<std::string> kGeneral{
-    "body",    "box",      "control", "coupled", "coupling", "damping",   "def",   "distance",   "edge",
-    "edges",   "element",  "entry",   "effect",  "field",    "force",     "frame", "face",       "initial",
-    "lagged",  "length",   "limit",   "loads",   "memory",   "mesh",      "moved", "multiplier", "network",
-    "node",    "nodes",    "patch",   "plane",   "point",    "pool",      "poses", "ratio",      "report",
-    "resolve", "ring",     "rows",    "segment", "shape",    "solid",     "space", "stiffness",  "strain",
-    "support", "geometry", "turning", "surface", "threads",  "treatment", "tree",  "closed",     "law",
+    "body",    "box",      "control",   "coupled", "coupling", "damping",   "def",   "distance",   "edge",
+    "edges",   "element",  "intrusion", "effect",  "field",    "force",     "frame", "face",       "initial",
+    "lagged",  "length",   "limit",     "loads",   "memory",   "mesh",      "moved", "multiplier", "network",
+    "node",    "nodes",    "patch",     "plane",   "point",    "pool",      "poses", "ratio",      "report",
+    "resolve", "ring",     "rows",      "segment", "shape",    "solid",     "space", "stiffness",  "strain",
+    "support", "geometry", "turning",   "surface", "threads",  "treatment", "tree",  "closed",     "law",
     "volume",             // the engine's own functions of bodies (SolidPool), which rows of effects are over
     "impact",  "impacts"  // jumps of velocities, whatever makes them
 };

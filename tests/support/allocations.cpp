@@ -3,6 +3,8 @@
 #include <atomic>
 #include <cerrno>
 #include <cstddef>
+#include <cstdlib>
+#include <new>
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define ISOCHOR_COUNT_ALLOCATIONS 1
@@ -10,6 +12,41 @@
 
 namespace {
 std::atomic<long> g_allocations{0};
+// Calls of operator new that are left until one fails; beyond that they go on failing where asked to.
+std::atomic<bool> g_armed{false}, g_ever_after{false}, g_failed{false};
+std::atomic<long> g_left{0};
+
+void fail_if_it_is_time() {
+  if (!g_armed.load(std::memory_order_relaxed)) return;
+  const long left = g_left.fetch_sub(1) - 1;
+  if (left > 0 || (left < 0 && !g_ever_after.load())) return;
+  g_failed.store(true);
+  throw std::bad_alloc();
+}
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+  fail_if_it_is_time();
+  if (void* p = std::malloc(bytes > 0 ? bytes : 1)) return p;
+  throw std::bad_alloc();
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  fail_if_it_is_time();
+  const auto step = static_cast<std::size_t>(alignment);
+  if (void* p = std::aligned_alloc(step, (bytes + step - 1) / step * step)) return p;
+  throw std::bad_alloc();
+}
+void operator delete(void* p) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::align_val_t) noexcept {
+  std::free(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  std::free(p);
 }
 
 #ifdef ISOCHOR_COUNT_ALLOCATIONS
@@ -54,6 +91,19 @@ bool allocations_are_counted() {
 #else
   return false;
 #endif
+}
+
+FailingAllocation::FailingAllocation(long n, bool ever_after) {
+  g_failed = false;
+  g_ever_after = ever_after;
+  g_left = n;
+  g_armed = true;
+}
+FailingAllocation::~FailingAllocation() {
+  g_armed = false;
+}
+bool FailingAllocation::failed() const {
+  return g_failed.load();
 }
 
 AllocationCount::AllocationCount() : start_(g_allocations.load()) {}

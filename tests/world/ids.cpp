@@ -53,7 +53,8 @@ TEST_CASE("an id of another world is refused by all that take one") {
   CHECK(world.measures(others.first).mass == 0);
   CHECK(world.fields(others.first).cell_J.empty());
   CHECK(world.reaction(effect)[0] == isochor::Vec3{});
-  CHECK(log.size() == 8);
+  CHECK(world.effect_name(effect).empty());
+  CHECK(log.size() == 9);
   for (const std::string& line : log) CHECK_THAT(line, ContainsSubstring("another world"));
 }
 

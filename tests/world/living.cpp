@@ -552,3 +552,26 @@ TEST_CASE("what a host has set survives a change of something else", "[living]")
   run(twin.world, 3);
   CHECK(b.world.state_hash() == twin.world.state_hash());
 }
+
+TEST_CASE("a step reports what was compiled since the last one, for whichever call") {
+  World world = make_world(static_options());
+  const BodyId body = add_body(world, box({1, 1, 1}), Element::tet4, neo_hookean(1e5, 0.3));
+  hold(world, body, {"x0"});
+  value(world.compile());
+  const isochor::StepReport first = world.step(0.5);
+  CHECK(first.compiled.work == CompileWork::structure);
+  CHECK(first.compiled.seconds > 0);
+  CHECK(world.step(0.1).compiled.work == CompileWork::nothing);
+
+  // Readers compile changes that wait; the next step tells of both.
+  hold(world, body, {"y0"}, {{0, 1, 0}});
+  CHECK(world.elastic_energy() == 0);
+  CHECK(world.compile_report().work == CompileWork::structure);
+  value(world.set_density(body, "", 500));
+  CHECK(world.measures(body).mass > 0);
+  CHECK(world.compile_report().work == CompileWork::numbers);
+  CHECK(world.step(0.1).compiled.work == CompileWork::structure);
+  const isochor::StepReport last = world.step(0.1);
+  CHECK(last.compiled.work == CompileWork::nothing);
+  CHECK(last.compiled.seconds == 0);
+}

@@ -17,10 +17,10 @@ class ContactPool final : public FrictionalPool<RigidGeometry>, public BarrierSt
     if (geometry().shape().shape != ObstacleShape::plane) f.barrier = this;
     return f;
   }
-  // contact_entry.cpp
+  // contact_intrusion.cpp
   Index passing(const StencilIncrement& increment, std::span<const Vec3> x,
                 std::span<Vec3> stopped) const override;
-  double entry(double t0, double t1, std::span<const Vec3> from, std::span<const Vec3> x) const override;
+  double intrusion(double t0, double t1, std::span<const Vec3> from, std::span<const Vec3> x) const override;
 
  private:
   bool meets_elsewhere(Index s, const Vec3& y0, const Vec3& y1, Vec3& met) const;

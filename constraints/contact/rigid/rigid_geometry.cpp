@@ -41,14 +41,14 @@ Mat3 made_definite(const Mat3& m, Definiteness policy) {
 
 void RigidGeometry::add(Index node, double stick, double size, const Vec3& inset) {
   std::vector<Index> nodes = {node};
-  if (points_) nodes.insert(nodes.end(), points_->node.begin(), points_->node.end());
+  if (shape_points()) nodes.insert(nodes.end(), shape_points()->node.begin(), shape_points()->node.end());
   nodes_.push(nodes);
   point_.push_back({stick, size, inset, 0, {}, {}});
 }
 
 void RigidGeometry::add(const ControlPoints& body, const Vec3& own, double offset, double stick) {
   std::vector<Index> nodes(body.node.begin(), body.node.end());
-  if (points_) nodes.insert(nodes.end(), points_->node.begin(), points_->node.end());
+  if (shape_points()) nodes.insert(nodes.end(), shape_points()->node.begin(), shape_points()->node.end());
   nodes_.push(nodes);
   point_.push_back({stick, 0, {}, offset, body, own});
 }
@@ -68,7 +68,7 @@ std::array<double, RigidGeometry::kMost> RigidGeometry::weights(Index s, const V
   const std::size_t count = point.rider ? 4 : 1;
   w[0] = 1;
   for (std::size_t a = 0; point.rider && a < 4; ++a) w[a] = point.rider->weight(a, point.own);
-  for (std::size_t a = 0; points_ && a < 4; ++a) w[count + a] = -points_->weight(a, own);
+  for (std::size_t a = 0; shape_points() && a < 4; ++a) w[count + a] = -shape_points()->weight(a, own);
   return w;
 }
 
@@ -84,7 +84,7 @@ RigidGeometry::Frames RigidGeometry::frames(const StencilRequest& q) const {
 RigidGeometry::Gap RigidGeometry::gap_at(const Frames& frames, Index s, Want want) const {
   Gap gap;
   gap.own = own_place(s, frames.now, frames.x);
-  gap.distance = distance_to(shape_, gap.own);
+  gap.distance = distance_to(shape(), gap.own);
   gap.value = gap.distance.value - point_[at(s)].offset;
   if (want == Want::value) return gap;
   gap.normal = transposed_times(frames.now.inverse, gap.distance.normal);
@@ -102,7 +102,7 @@ void RigidGeometry::add_curvature(const StencilRequest& q, const Frames& frames,
   if (q.definiteness == Definiteness::projected) factor = std::max(multiplier, 0.0);
   if (q.definiteness == Definiteness::absolute) factor = std::abs(multiplier);
   Mat3 curvature = pulled_back(inverse, gap.distance.curvature);
-  if (!is_convex(shape_) && q.definiteness != Definiteness::exact) {
+  if (!is_convex(shape()) && q.definiteness != Definiteness::exact) {
     // Its eigenvalues have either sign, whatever that of the multiplier.
     for (double& v : curvature.m) v *= multiplier;
     curvature = made_definite(curvature, q.definiteness);
@@ -111,18 +111,18 @@ void RigidGeometry::add_curvature(const StencilRequest& q, const Frames& frames,
   const auto& c = gap.weight;
   const std::size_t n = nodes_[s].size(), first = point_[at(s)].rider ? 4 : 1;
   // The cross terms are indefinite: left out where a definite matrix is asked for.
-  const bool cross_terms = points_ && q.definiteness == Definiteness::exact;
+  const bool cross_terms = shape_points() && q.definiteness == Definiteness::exact;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
       Mat3& block = blocks[i * (i + 1) / 2 + j];
       for (std::size_t k = 0; k < 9; ++k) block.m[k] += factor * c[i] * c[j] * curvature.m[k];
       if (!cross_terms) continue;
       if (i >= first) {
-        const Vec3 e = transposed_times(inverse, points_->slope(i - first));
+        const Vec3 e = transposed_times(inverse, shape_points()->slope(i - first));
         add_outer(block, -multiplier * c[j], gap.normal, e);
       }
       if (j >= first) {
-        const Vec3 e = transposed_times(inverse, points_->slope(j - first));
+        const Vec3 e = transposed_times(inverse, shape_points()->slope(j - first));
         add_outer(block, -multiplier * c[i], e, gap.normal);
       }
     }

@@ -20,12 +20,35 @@ struct RigidPoint {
   Vec3 own{};
 };
 
-// The shape has a given pose, or is that of a free rigid body, whose control points then are nodes of every
-// stencil, behind those of the point. The gap is the distance to the shape less an offset, negative inside.
-// With the position in the shape's axes A y = p - c and the weights c_i of the nodes in the motion of the
-// point relative to the shape,
+// A shape that has a given pose, or is that of a free rigid body with its control points.
+class PlacedShape {
+ public:
+  // The pose of `shape` counts where there are no control points; `live`: what moves it in place of its own
+  // motion.
+  PlacedShape(Obstacle shape, std::optional<ControlPoints> points, std::shared_ptr<const LivePose> live)
+      : shape_(std::move(shape)), points_(points), live_(std::move(live)) {}
+
+  const Obstacle& shape() const { return shape_; }
+  const std::optional<ControlPoints>& shape_points() const { return points_; }
+  // At positions x and time t.
+  ContactFrame frame(double t, std::span<const Vec3> x) const {
+    return points_ ? frame_of(*points_, x) : frame_of(pose_of(shape_, track(), t));
+  }
+  bool moves() const { return !points_ && !track().keys.empty(); }
+
+ private:
+  const PoseTrack& track() const { return live_ ? live_->track() : shape_.motion; }
+
+  Obstacle shape_;
+  std::optional<ControlPoints> points_;
+  std::shared_ptr<const LivePose> live_;
+};
+
+// Control points of the shape are nodes of every stencil, behind those of the point. The gap is the distance
+// to the shape less an offset, negative inside. With the position in the shape's axes A y = p - c and the
+// weights c_i of the nodes in the motion of the point relative to the shape,
 //   d gap/dx_i = c_i n,  n = A^-T grad d(y).
-class RigidGeometry {
+class RigidGeometry : public PlacedShape {
  public:
   static constexpr std::size_t kMost = 8;  // nodes of a stencil
   struct Frames {
@@ -47,32 +70,23 @@ class RigidGeometry {
   };
   class Rates;  // rigid_touch.cpp
 
-  // The pose of `shape` counts where there are no control points; `live`: what moves it in place of its own
-  // motion.
   explicit RigidGeometry(Obstacle shape, std::optional<ControlPoints> points = {},
                          std::shared_ptr<const LivePose> live = nullptr)
-      : shape_(std::move(shape)), points_(points), live_(std::move(live)) {}
+      : PlacedShape(std::move(shape), points, std::move(live)) {}
   void add(Index node, double stick, double size = 0, const Vec3& inset = {});
   // A point of a free rigid body at `own` in its axes, which keeps `offset` away.
   void add(const ControlPoints& body, const Vec3& own, double offset, double stick);
 
   const Lists& nodes() const { return nodes_; }
-  const Obstacle& shape() const { return shape_; }
-  const std::optional<ControlPoints>& shape_points() const { return points_; }
   const RigidPoint& operator[](Index s) const { return point_[at(s)]; }
 
-  // Position of a point, and the frame of the shape, at positions x and time t.
   Vec3 position(Index s, std::span<const Vec3> x) const;
-  ContactFrame frame(double t, std::span<const Vec3> x) const {
-    return points_ ? frame_of(*points_, x) : frame_of(pose_of(shape_, track(), t));
-  }
-  bool moves() const { return !points_ && !track().keys.empty(); }
   // Where the distance of a point is taken, in the axes of the shape.
   Vec3 own_place(Index s, const ContactFrame& frame, std::span<const Vec3> x) const {
     return frame.to_own(position(s, x)) + point_[at(s)].inset;
   }
   double gap(Index s, const ContactFrame& frame, std::span<const Vec3> x) const {
-    return distance_value(shape_, own_place(s, frame, x)) - point_[at(s)].offset;
+    return distance_value(shape(), own_place(s, frame, x)) - point_[at(s)].offset;
   }
   // Weights of the nodes in the motion of a point at `own` in the shape's axes, relative to the shape.
   std::array<double, kMost> weights(Index s, const Vec3& own) const;
@@ -91,11 +105,6 @@ class RigidGeometry {
   Rates rates(const StencilRequest& request, const Frames& frames, Index s, const TouchAt& touch) const;
 
  private:
-  const PoseTrack& track() const { return live_ ? live_->track() : shape_.motion; }
-
-  Obstacle shape_;
-  std::optional<ControlPoints> points_;
-  std::shared_ptr<const LivePose> live_;
   Lists nodes_;
   std::vector<RigidPoint> point_;
 };

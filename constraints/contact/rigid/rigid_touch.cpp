@@ -9,7 +9,7 @@ namespace isochor {
 RigidGeometry::TouchAt RigidGeometry::touch(const StencilRequest& q, const Frames& frames, Index s) const {
   TouchAt f;
   f.own = own_place(s, frames.lag, q.lag.x);
-  const Vec3 slope = distance_to(shape_, f.own).normal;
+  const Vec3 slope = distance_to(shape(), f.own).normal;
   f.slope = transposed_times(frames.lag.inverse, slope);
   // Fields may be flat where they are far from the surface.
   const double steepness = std::sqrt(dot(f.slope, f.slope));
@@ -22,7 +22,7 @@ RigidGeometry::TouchAt RigidGeometry::touch(const StencilRequest& q, const Frame
     f.place = body.to_own(frames.lag.to_world(f.touch));
     for (std::size_t a = 0; a < 4; ++a) f.weight[a] = rider->weight(a, f.place);
   }
-  if (!points_) f.carried = frames.now.to_world(f.touch) - frames.before.to_world(f.touch);
+  if (!shape_points()) f.carried = frames.now.to_world(f.touch) - frames.before.to_world(f.touch);
   return f;
 }
 
@@ -41,13 +41,13 @@ class RigidGeometry::Rates {
         touch_(touch),
         rider_(point_.rider ? &*point_.rider : nullptr),
         first_(rider_ ? 4 : 1),
-        curvature_(distance_to(geometry.shape_, touch.own).curvature) {
+        curvature_(distance_to(geometry.shape(), touch.own).curvature) {
     if (rider_) body_ = frame_of(*rider_, q.lag.x);
   }
 
   void node(std::size_t b) {
     node_ = b;
-    turn_ = of_shape() ? geometry_.points_->slope(b - first_) : Vec3{};
+    turn_ = of_shape() ? geometry_.shape_points()->slope(b - first_) : Vec3{};
   }
   Vec3 kept(const Vec3& own, int e) const { return dot(turn_, own) * along(e); }
 
@@ -64,8 +64,8 @@ class RigidGeometry::Rates {
     const Vec3& n = touch_.normal;
     if (steepness > 0) out.normal = (1 / steepness) * (slope_rate - dot(slope_rate, n) * n);
     const Vec3 touch_rate = own_rate - point_.offset * bend;
-    for (std::size_t a = 0; geometry_.points_ && a < 4; ++a)
-      out.weight[first_ + a] = -dot(geometry_.points_->slope(a), touch_rate);
+    for (std::size_t a = 0; geometry_.shape_points() && a < 4; ++a)
+      out.weight[first_ + a] = -dot(geometry_.shape_points()->slope(a), touch_rate);
     if (rider_) {
       Vec3 place_rate = lag.A * touch_rate + center_rate + dot(turn_, touch_.touch) * rate;
       if (!of_shape()) place_rate -= (0.25 + dot(rider_->slope(node_), touch_.place)) * rate;
@@ -76,7 +76,7 @@ class RigidGeometry::Rates {
     const auto nodes = geometry_.nodes_[s_];
     for (std::size_t i = 0; i < nodes.size(); ++i)
       out.whole += out.weight[i] * (q_.x[at(nodes[i])] - q_.increment.before[at(nodes[i])]);
-    if (!geometry_.points_) out.whole -= frames_.now.A * touch_rate - frames_.before.A * touch_rate;
+    if (!geometry_.shape_points()) out.whole -= frames_.now.A * touch_rate - frames_.before.A * touch_rate;
   }
 
  private:

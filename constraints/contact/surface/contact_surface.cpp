@@ -245,6 +245,42 @@ bool ContactSurface::in_patch(Index center, Index triangle, Index point) const {
          !touches(triangle, points_[at(point)]);
 }
 
+ContactSurface::Candidate ContactSurface::candidate(Index t, Index s, Index center, const Vec3& p,
+                                                    std::span<const Vec3> x) const {
+  const auto& c = corner_[at(t)];
+  const Vec3 &a = x[at(c[0])], &b = x[at(c[1])], &d = x[at(c[2])];
+  const Vec3 normal = cross(b - a, d - a);
+  const TrianglePoint near = nearest_on_triangle(p, a, b, d);
+  const Vec3 r = p - (near.weight[0] * a + near.weight[1] * b + near.weight[2] * d);
+  const double height = dot(r, normal) / norm(normal), square = dot(r, r);
+  // Beyond a border nothing is below the point.
+  const auto open = [&](int edge) {
+    const auto k = static_cast<std::size_t>(edge);
+    return across_[at(t)][k] < 0 && side_across_[at(t)][k] < 0;
+  };
+  bool border = near.edge >= 0 && open(near.edge);
+  if (near.corner >= 0) {
+    // A triangle that ends at a border with a corner alone does not see what is beside it: its neighbors
+    // do.
+    const auto k = static_cast<std::size_t>(near.corner), before = (k + 2) % 3;
+    const bool inner = across_[at(t)][k] >= 0 && across_[at(t)][before] >= 0;
+    border = open(near.corner) || open((near.corner + 2) % 3) || (inner && at_border_[at(c[k])]);
+  }
+  const double most = (in_patch(center, t, s) ? kLeave : kEnter) * size_;
+  if (border && square - height * height > most * most) return Candidate{};
+  return Candidate{t, square, height};
+}
+
+// Of triangles that share the nearest corner or edge, the one that the point is most above.
+void ContactSurface::keep_nearer(Candidate& best, const Candidate& c) const {
+  if (c.triangle < 0) return;
+  const double same = 1e-9 * best.square + 1e-20 * size_ * size_;
+  const double higher = std::abs(c.height) - std::abs(best.height);
+  const bool equal = c.square <= best.square + same && best.triangle >= 0 &&
+                     (higher > 1e-9 * size_ || (higher > -1e-9 * size_ && c.triangle < best.triangle));
+  if (c.square < best.square - same || equal) best = c;
+}
+
 ContactSurface::Finding ContactSurface::find(Index s, std::span<const Vec3> from, std::span<const Vec3> x,
                                              double reach, Index center, std::span<const Box> boxes) const {
   const SurfacePoint& point = points_[at(s)];
@@ -255,44 +291,6 @@ ContactSurface::Finding ContactSurface::find(Index s, std::span<const Vec3> from
   way = way.grown(reach);
   Vec3 own{};
   for (const Index t : at_point_[s]) own += area_vector(corner_[at(t)], x);
-  struct Candidate {
-    Index triangle = -1;
-    double square = 0, height = 0;
-  };
-  // How a triangle that faces the point lies to it; no triangle where it does not count.
-  const auto look_at = [&](Index t) {
-    const auto& c = corner_[at(t)];
-    const Vec3 &a = x[at(c[0])], &b = x[at(c[1])], &d = x[at(c[2])];
-    const Vec3 normal = cross(b - a, d - a);
-    const TrianglePoint near = nearest_on_triangle(p1, a, b, d);
-    const Vec3 r = p1 - (near.weight[0] * a + near.weight[1] * b + near.weight[2] * d);
-    const double height = dot(r, normal) / norm(normal), square = dot(r, r);
-    // Beyond a border nothing is below the point.
-    const auto open = [&](int edge) {
-      const auto k = static_cast<std::size_t>(edge);
-      return across_[at(t)][k] < 0 && side_across_[at(t)][k] < 0;
-    };
-    bool border = near.edge >= 0 && open(near.edge);
-    if (near.corner >= 0) {
-      // A triangle that ends at a border with a corner alone does not see what is beside it: its neighbors
-      // do.
-      const auto k = static_cast<std::size_t>(near.corner), before = (k + 2) % 3;
-      const bool inner = across_[at(t)][k] >= 0 && across_[at(t)][before] >= 0;
-      border = open(near.corner) || open((near.corner + 2) % 3) || (inner && at_border_[at(c[k])]);
-    }
-    const double most = (in_patch(center, t, s) ? kLeave : kEnter) * size_;
-    if (border && square - height * height > most * most) return Candidate{};
-    return Candidate{t, square, height};
-  };
-  // Of triangles that share the nearest corner or edge, the one that the point is most above.
-  const auto keep = [&](Candidate& best, const Candidate& c) {
-    if (c.triangle < 0) return;
-    const double same = 1e-9 * best.square + 1e-20 * size_ * size_;
-    const double higher = std::abs(c.height) - std::abs(best.height);
-    const bool equal = c.square <= best.square + same && best.triangle >= 0 &&
-                       (higher > 1e-9 * size_ || (higher > -1e-9 * size_ && c.triangle < best.triangle));
-    if (c.square < best.square - same || equal) best = c;
-  };
   // Within one body, what is behind a triangle may be the other side of its own wall: there depth counts only
   // next to where the point went in from the front.
   Index entered = -1;
@@ -312,8 +310,9 @@ ContactSurface::Finding ContactSurface::find(Index s, std::span<const Vec3> from
   tree_[other].visit(boxes, enter, [&](Index i) {
     const Index t = first_[other] + i;
     if (!faces(t)) return;
-    const Candidate c = look_at(t);
-    if (!single_ || c.height > -kShallow * size_ || (entered >= 0 && neighbors(t, entered))) keep(best, c);
+    const Candidate c = candidate(t, s, center, p1, x);
+    if (!single_ || c.height > -kShallow * size_ || (entered >= 0 && neighbors(t, entered)))
+      keep_nearer(best, c);
     const auto& corner = corner_[at(t)];
     const double time = crossing_time({p0, from[at(corner[0])], from[at(corner[1])], from[at(corner[2])]},
                                       {p1, x[at(corner[0])], x[at(corner[1])], x[at(corner[2])]});
@@ -324,7 +323,7 @@ ContactSurface::Finding ContactSurface::find(Index s, std::span<const Vec3> from
   });
   if (single_ && found.crossed >= 0) {
     tree_[other].visit(boxes, enter, [&](Index i) {
-      if (neighbors(i, found.crossed) && faces(i)) keep(best, look_at(i));
+      if (neighbors(i, found.crossed) && faces(i)) keep_nearer(best, candidate(i, s, center, p1, x));
     });
   }
   found.nearest = best.triangle;

@@ -88,6 +88,14 @@ class ContactSurface {
   };
   void add_face(std::span<const Index> face, int side);
   void add_points(std::span<const Vec3> rest);
+  // How a triangle that faces a point lies to it; no triangle where it does not count.
+  struct Candidate {
+    Index triangle = -1;
+    double square = 0, height = 0;
+  };
+  Candidate candidate(Index triangle, Index point, Index center, const Vec3& p,
+                      std::span<const Vec3> x) const;
+  void keep_nearer(Candidate& best, const Candidate& c) const;
   Finding find(Index point, std::span<const Vec3> from, std::span<const Vec3> x, double reach, Index center,
                std::span<const Box> boxes) const;
   void split_at_sharp_edges(std::span<const Vec3> rest);

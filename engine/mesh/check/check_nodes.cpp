@@ -42,9 +42,9 @@ class Grid {
     const Vec3& x = mesh_.nodes[at(node)];
     Index found = -1;
     for (int corner = 0; corner < 8 && found < 0; ++corner) {
-      Vec3 probe = x;
-      for (int k = 0; k < 3; ++k) probe[k] += ((corner >> k) & 1) != 0 ? tolerance_ : -tolerance_;
-      const auto entry = head_.find(key(probe));
+      Vec3 shifted = x;
+      for (int k = 0; k < 3; ++k) shifted[k] += ((corner >> k) & 1) != 0 ? tolerance_ : -tolerance_;
+      const auto entry = head_.find(key(shifted));
       for (Index other = entry == head_.end() ? -1 : entry->second; other >= 0; other = next_[at(other)]) {
         if (length(mesh_.nodes[at(other)] - x) <= tolerance_) found = other;
       }

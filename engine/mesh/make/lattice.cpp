@@ -245,31 +245,9 @@ void join_corners(const Grid& grid, const std::vector<Index>& cell, Groups& corn
   }
 }
 
-}  // namespace
-
-Result<Lattice> lattice_mesh(const LatticeDef& given) {
-  if (auto r = check(given); !r) return Error{r.error()};
-  LatticeDef def = given;
-  if (signed_volume(def) < 0) {
-    for (std::size_t t = 0; t < def.triangles.size(); t += 3)
-      std::swap(def.triangles[t], def.triangles[t + 1]);
-  }
-  const Grid grid(def);
-  if (grid.parts() > 1e8) {
-    return Error{join("lattice: spacing = ", def.spacing, " m with samples = ", def.samples, " makes ",
-                      grid.parts(),
-                      " parts and at most 1e8 are taken; use a wider spacing or fewer samples")};
-  }
-  std::vector<bool> marked(static_cast<std::size_t>(grid.parts()), false);
-  mark_inside(def, grid, marked);
-  mark_surface(def, grid, marked);
-  std::vector<std::array<Index, 3>> cube;
-  const std::vector<Index> cell = cells_of_parts(def, grid, marked, cube);
-  Groups corners(8 * cube.size());
-  join_corners(grid, cell, corners);
-
-  Lattice lattice;
-  Mesh& mesh = lattice.mesh;
+// Cells at the cubes, with the corners that these share; returns the cell of each cube.
+std::vector<Index> add_cells(const Grid& grid, const std::vector<std::array<Index, 3>>& cube, Groups& corners,
+                             Mesh& mesh) {
   mesh.cell_type = CellType::hex8;
   mesh.source = "lattice";
   mesh.regions = {"body"};
@@ -296,8 +274,13 @@ Result<Lattice> lattice_mesh(const LatticeDef& given) {
     place[c] = it->second;
     if (fresh) mesh.cells.insert(mesh.cells.end(), n.begin(), n.end());
   }
+  return place;
+}
 
-  // Points sit in the cell of a triangle's part there, found as the surface was marked.
+// Points sit in the cell of a triangle's part there, found as the surface was marked.
+Result<void> embed_points(const LatticeDef& def, const Grid& grid, const std::vector<Index>& cell,
+                          const std::vector<Index>& place, const std::vector<std::array<Index, 3>>& cube,
+                          Lattice& lattice) {
   lattice.embedding.resize(def.points.size());
   for (std::size_t t = 0; t < def.triangles.size(); t += 3) {
     const Vec3 a = def.points[at(def.triangles[t])];
@@ -320,7 +303,7 @@ Result<Lattice> lattice_mesh(const LatticeDef& given) {
                    1;
       }
       for (std::size_t c = 0; c < 8; ++c) {
-        p.nodes[c] = mesh.cells[8 * at(p.cell) + c];
+        p.nodes[c] = lattice.mesh.cells[8 * at(p.cell) + c];
         p.weights[c] = hex_function(c, xi);
       }
     }
@@ -329,6 +312,35 @@ Result<Lattice> lattice_mesh(const LatticeDef& given) {
     if (lattice.embedding[i].cell >= 0) continue;
     return Error{join("lattice: point ", i, " of the surface belongs to no triangle; remove it")};
   }
+  return {};
+}
+
+}  // namespace
+
+Result<Lattice> lattice_mesh(const LatticeDef& given) {
+  if (auto r = check(given); !r) return Error{r.error()};
+  LatticeDef def = given;
+  if (signed_volume(def) < 0) {
+    for (std::size_t t = 0; t < def.triangles.size(); t += 3)
+      std::swap(def.triangles[t], def.triangles[t + 1]);
+  }
+  const Grid grid(def);
+  if (grid.parts() > 1e8) {
+    return Error{join("lattice: spacing = ", def.spacing, " m with samples = ", def.samples, " makes ",
+                      grid.parts(),
+                      " parts and at most 1e8 are taken; use a wider spacing or fewer samples")};
+  }
+  std::vector<bool> marked(static_cast<std::size_t>(grid.parts()), false);
+  mark_inside(def, grid, marked);
+  mark_surface(def, grid, marked);
+  std::vector<std::array<Index, 3>> cube;
+  const std::vector<Index> cell = cells_of_parts(def, grid, marked, cube);
+  Groups corners(8 * cube.size());
+  join_corners(grid, cell, corners);
+
+  Lattice lattice;
+  const std::vector<Index> place = add_cells(grid, cube, corners, lattice.mesh);
+  if (auto r = embed_points(def, grid, cell, place, cube, lattice); !r) return Error{r.error()};
   return lattice;
 }
 

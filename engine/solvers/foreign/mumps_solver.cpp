@@ -239,6 +239,9 @@ bool mumps_graph_ordering(std::span<const Index> start, std::span<const Index> n
       column.push_back(i + 1);
     }
   }
+  // All memory of our own is taken before there is an instance that must be ended.
+  position.resize(at(n));
+  std::vector<std::uint8_t> seen(at(n), 0);
   DMUMPS_STRUC_C graph{};
   const std::lock_guard lock(mumps_mutex());
   const auto run = [&](int job) {
@@ -261,9 +264,7 @@ bool mumps_graph_ordering(std::span<const Index> start, std::span<const Index> n
   run(job_analyze);
   bool ok = graph.infog[0] >= 0 && graph.sym_perm != nullptr;
   if (ok) {
-    position.resize(at(n));
     for (Index i = 0; i < n; ++i) position[at(i)] = graph.sym_perm[i] - 1;
-    std::vector<std::uint8_t> seen(at(n), 0);
     for (const Index k : position) {
       ok = ok && k >= 0 && k < n && !seen[at(k)];
       if (ok) seen[at(k)] = 1;

@@ -411,7 +411,11 @@ Ordering best_ordering(const SymmetricPattern& pattern, OrderingMethod method) {
   if (pattern.base && pattern.base->pattern.size > 0 && same_unknowns(pattern, pattern.base->pattern)) {
     OrderingBase& base = *pattern.base;
     const std::lock_guard lock(base.mutex);
-    if (base.operations == 0) base.ordering = best_of_all(base.pattern, base.operations);
+    if (base.operations == 0) {
+      double operations = 0;
+      base.ordering = best_of_all(base.pattern, operations);
+      base.operations = operations;  // once the ordering is there: memory may run out on the way
+    }
     if (operations_of(pattern, base.ordering) <= little_more * base.operations) return base.ordering;
   }
   double operations = 0;

@@ -76,11 +76,11 @@ FactorReport LdltSolver::analyze_pattern() {
   }
 
   permuted_.assign(n, 0);
-  probe_solution_.assign(n, 0);
+  test_solution_.assign(n, 0);
   // A right-hand side without symmetry, so that it has a part along any null vector.
-  probe_right_.resize(n);
+  test_right_.resize(n);
   std::uint32_t state = 12345;
-  for (double& b : probe_right_) {
+  for (double& b : test_right_) {
     state = state * 1664525u + 1013904223u;
     b = 0.5 + static_cast<double>(state >> 8) / double{1 << 24} * ((state >> 31) != 0u ? 1 : -1);
   }
@@ -108,11 +108,11 @@ bool LdltSolver::try_factor(Shift shift) {
 }
 
 // Solves a fixed system: is the factor good enough to solve with, and the matrix far enough from singular?
-bool LdltSolver::probe() {
-  const SolveReport report = refine(probe_right_, probe_solution_);
+bool LdltSolver::solves_well() {
+  const SolveReport report = refine(test_right_, test_solution_);
   if (!report.ok) return false;
   double largest = 0;
-  for (const double x : probe_solution_) largest = std::max(largest, std::abs(x));
+  for (const double x : test_solution_) largest = std::max(largest, std::abs(x));
   // Against the right-hand side, of size 1, alone: a huge solution hides any residual in the relative one.
   return largest * norm() < singular_growth && last_residual_norm() < 1e-3;
 }
@@ -133,7 +133,7 @@ FactorReport LdltSolver::factor_values() {
     }
     if (std::isnan(poison) || smallest == 0) return false;
     const bool doubtful = shift != Shift::none || smallest < doubtful_pivot * largest;
-    return !doubtful || probe();
+    return !doubtful || solves_well();
   };
   max_refinements = 5;
   if (settle(Shift::none)) return report;

@@ -42,14 +42,14 @@ class LdltSolver : public DirectSolver {
 
   enum class Shift { none, multipliers, all };
   bool try_factor(Shift shift);
-  bool probe();
+  bool solves_well();
 
   OrderingMethod method_;
   Ordering ordering_;
   UpperMatrix matrix_;
   std::vector<Index> slot_;                // where a value of the pattern goes in matrix_
   std::vector<std::int64_t> diagonal_of_;  // value index of each unknown's diagonal, -1: not in the pattern
-  std::vector<double> permuted_, probe_right_, probe_solution_;
+  std::vector<double> permuted_, test_right_, test_solution_;
 };
 
 }  // namespace isochor

@@ -62,8 +62,8 @@ class EigenLuSolver final : public DirectSolver {
     solver_.analyzePattern(matrix_);
     work_.resize(p.size);
     probe_.assign(at(p.size), 0);
-    probe_right_.resize(at(p.size));
-    for (std::size_t i = 0; i < probe_right_.size(); ++i) probe_right_[i] = i % 3 == 0 ? 1 : -0.5;
+    test_right_.resize(at(p.size));
+    for (std::size_t i = 0; i < test_right_.size(); ++i) test_right_[i] = i % 3 == 0 ? 1 : -0.5;
     return {};
   }
 
@@ -74,7 +74,7 @@ class EigenLuSolver final : public DirectSolver {
     solver_.factorize(matrix_);
     bool good = solver_.info() == Eigen::Success;
     if (good) {
-      const SolveReport probed = refine(probe_right_, probe_);
+      const SolveReport probed = refine(test_right_, probe_);
       double largest = 0;
       for (const double x : probe_) largest = std::max(largest, std::abs(x));
       good = probed.ok && largest * norm() < singular_growth;
@@ -104,7 +104,7 @@ class EigenLuSolver final : public DirectSolver {
   std::vector<std::size_t> source_;  // of every entry, in the values
   Eigen::SparseLU<Matrix, Eigen::NaturalOrdering<Index>> solver_;
   Eigen::VectorXd work_;
-  std::vector<double> probe_, probe_right_;
+  std::vector<double> probe_, test_right_;
 };
 
 }  // namespace

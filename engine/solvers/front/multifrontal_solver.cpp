@@ -76,11 +76,11 @@ FactorReport MultifrontalSolver::analyze_pattern() {
   full_.set_tree(*tree_);
   narrow_.resize(n);
   copy_.resize(n);
-  probe_solution_.resize(n);
+  test_solution_.resize(n);
   // Without symmetry, so that it has a part along any direction.
-  probe_right_.resize(n);
+  test_right_.resize(n);
   std::uint32_t state = 12345;
-  for (double& b : probe_right_) {
+  for (double& b : test_right_) {
     state = state * 1664525u + 1013904223u;
     b = 0.5 + static_cast<double>(state >> 8) / double{1 << 24} * ((state >> 31) != 0u ? 1 : -1);
   }
@@ -125,15 +125,15 @@ bool MultifrontalSolver::factor_fronts(FactorReport& report) {
           : full_.factor(loop_, values(), smallest_double * norm(), interrupt());
   if (!ok) return false;
   report.negative_pivots = rung_ == Rung::single ? single_.negative_pivots() : full_.negative_pivots();
-  return report.negative_pivots == expected_ || probe();
+  return report.negative_pivots == expected_ || solves_well();
 }
 
 bool MultifrontalSolver::doubtful() const {
   return rung_ != Rung::pivoting && residual_ratio() > largest_ratio;
 }
 
-bool MultifrontalSolver::probe() {
-  return refine(probe_right_, probe_solution_).ok && !doubtful();
+bool MultifrontalSolver::solves_well() {
+  return refine(test_right_, test_solution_).ok && !doubtful();
 }
 
 FactorReport MultifrontalSolver::factor_pivoting() {

@@ -52,7 +52,7 @@ class MultifrontalSolver final : public DirectSolver {
  private:
   FactorReport factor_from(Rung rung);
   bool factor_fronts(FactorReport& report);
-  bool probe();
+  bool solves_well();
   FactorReport factor_pivoting();
 
   std::unique_ptr<LinearSolver> pivoting_;
@@ -66,7 +66,7 @@ class MultifrontalSolver final : public DirectSolver {
   Rung lowest_ = Rung::single;  // that factorizations start from
   Index expected_ = -1, reported_ = -1;
   std::vector<float> narrow_;
-  std::vector<double> copy_, probe_right_, probe_solution_;
+  std::vector<double> copy_, test_right_, test_solution_;
   std::int64_t used_[3] = {0, 0, 0};
 };
 

@@ -43,7 +43,9 @@ FactorReport IterativeSolver::analyze(const SymmetricPattern& pattern) {
     matrix_.analyze(pattern, geometry_);
     multigrid_.analyze(matrix_.take_stiffness_pattern());
     const std::size_t n = matrix_.size(), rows = at(matrix_.rows());
-    for (auto* v : {&b_, &x_, &residual_, &v0_, &v1_, &v2_, &z1_, &z2_, &w0_, &w1_, &w2_}) v->assign(n, 0);
+    for (auto* v : {&b_, &x_, &residual_, &lanczos_.v0, &lanczos_.v1, &lanczos_.v2, &lanczos_.z1,
+                    &lanczos_.z2, &lanczos_.w0, &lanczos_.w1, &lanczos_.w2})
+      v->assign(n, 0);
     dot_.allocate(n);
     modes_.assign(3 * at(matrix_.nodes()) * 6, 0);
     row_inverse_.assign(rows, 1);
@@ -148,7 +150,7 @@ bool IterativeSolver::build() {
 void IterativeSolver::measure_wide_rows() {
   const std::size_t n = 3 * at(matrix_.nodes());
   for (const Index r : wide_rows_) {
-    const auto g = std::span(v0_).first(n), z = std::span(v1_).first(n);
+    const auto g = std::span(lanczos_.v0).first(n), z = std::span(lanczos_.v1).first(n);
     matrix_.row_gradient(r, g);
     multigrid_.apply(loop_, g, z);
     const double schur = dot(g, z) + std::abs(matrix_.compliance_diagonal(r));
@@ -174,12 +176,12 @@ void IterativeSolver::precondition(std::span<const double> x, std::span<double> 
 double IterativeSolver::norm_of_residual(std::span<const double> b, std::span<const double> x) {
   matrix_.multiply(loop_, multigrid_.matrix(), x, residual_);
   for (std::size_t i = 0; i < b.size(); ++i) residual_[i] = b[i] - residual_[i];
-  apply(residual_, z1_);
-  const double square = dot(residual_, z1_);
+  apply(residual_, lanczos_.z1);
+  const double square = dot(residual_, lanczos_.z1);
   return square >= 0 ? std::sqrt(square) : -1;
 }
 
-// Paige & Saunders 1975 with a preconditioner, from residual_ and z1_ = B residual_. False when the
+// Paige & Saunders 1975 with a preconditioner, from residual_ and lanczos_.z1 = B residual_. False when the
 // preconditioner turns out not to be definite.
 bool IterativeSolver::minimize(std::span<const double> b, std::span<double> x, double target,
                                int& iterations) {
@@ -187,9 +189,9 @@ bool IterativeSolver::minimize(std::span<const double> b, std::span<double> x, d
   const std::size_t n = x.size();
   const auto size = static_cast<Index>(n);
   constexpr Index grain = 8192;
-  for (auto* v : {&v0_, &w0_, &w1_}) std::fill(v->begin(), v->end(), 0.0);
-  std::copy(residual_.begin(), residual_.end(), v1_.begin());
-  const double square = dot(v1_, z1_);
+  for (auto* v : {&lanczos_.v0, &lanczos_.w0, &lanczos_.w1}) std::fill(v->begin(), v->end(), 0.0);
+  std::copy(residual_.begin(), residual_.end(), lanczos_.v1.begin());
+  const double square = dot(lanczos_.v1, lanczos_.z1);
   if (!(square >= 0)) return false;
   double gamma0 = 1, gamma1 = std::sqrt(square), eta = gamma1;
   double s0 = 0, s1 = 0, c0 = 1, c1 = 1;
@@ -210,19 +212,19 @@ bool IterativeSolver::minimize(std::span<const double> b, std::span<double> x, d
       before = now;
     }
     loop_(size, grain, [&](Index begin, Index end) {
-      for (Index i = begin; i < end; ++i) z1_[at(i)] /= gamma1;
+      for (Index i = begin; i < end; ++i) lanczos_.z1[at(i)] /= gamma1;
     });
     if (interrupted()) return true;
-    matrix_.multiply(loop_, multigrid_.matrix(), z1_, v2_);
-    const double delta = dot(v2_, z1_);
+    matrix_.multiply(loop_, multigrid_.matrix(), lanczos_.z1, lanczos_.v2);
+    const double delta = dot(lanczos_.v2, lanczos_.z1);
     loop_(size, grain, [&](Index begin, Index end) {
       for (Index k = begin; k < end; ++k) {
         const std::size_t i = at(k);
-        v2_[i] -= delta / gamma1 * v1_[i] + gamma1 / gamma0 * v0_[i];
+        lanczos_.v2[i] -= delta / gamma1 * lanczos_.v1[i] + gamma1 / gamma0 * lanczos_.v0[i];
       }
     });
-    apply(v2_, z2_);
-    const double next = dot(v2_, z2_);
+    apply(lanczos_.v2, lanczos_.z2);
+    const double next = dot(lanczos_.v2, lanczos_.z2);
     if (!std::isfinite(next) || next < -1e-12 * norm_) return false;
     const double gamma2 = std::sqrt(std::max(next, 0.0));
     const double a0 = c1 * delta - c0 * s1 * gamma1, a1 = std::sqrt(a0 * a0 + gamma2 * gamma2);
@@ -232,16 +234,16 @@ bool IterativeSolver::minimize(std::span<const double> b, std::span<double> x, d
     loop_(size, grain, [&](Index begin, Index end) {
       for (Index k = begin; k < end; ++k) {
         const std::size_t i = at(k);
-        w2_[i] = (z1_[i] - a3 * w0_[i] - a2 * w1_[i]) / a1;
-        x[i] += step * w2_[i];
+        lanczos_.w2[i] = (lanczos_.z1[i] - a3 * lanczos_.w0[i] - a2 * lanczos_.w1[i]) / a1;
+        x[i] += step * lanczos_.w2[i];
       }
     });
     eta *= -s2;
-    std::swap(v0_, v1_);
-    std::swap(v1_, v2_);
-    std::swap(w0_, w1_);
-    std::swap(w1_, w2_);
-    std::swap(z1_, z2_);
+    std::swap(lanczos_.v0, lanczos_.v1);
+    std::swap(lanczos_.v1, lanczos_.v2);
+    std::swap(lanczos_.w0, lanczos_.w1);
+    std::swap(lanczos_.w1, lanczos_.w2);
+    std::swap(lanczos_.z1, lanczos_.z2);
     gamma0 = gamma1;
     gamma1 = gamma2;
     s0 = s1;

@@ -61,8 +61,10 @@ class IterativeSolver final : public LinearSolver {
   std::vector<double> modes_, row_inverse_;
   std::vector<Index> wide_rows_;
   std::vector<double> b_, x_, residual_, row_sum_;
-  // Lanczos vectors (three generations), preconditioned ones and directions.
-  std::vector<double> v0_, v1_, v2_, z1_, z2_, w0_, w1_, w2_;
+  // Three generations of vectors, preconditioned ones and directions.
+  struct {
+    std::vector<double> v0, v1, v2, z1, z2, w0, w1, w2;
+  } lanczos_;
 };
 
 std::unique_ptr<LinearSolver> make_iterative_solver(const IterativeOptions& options = {});

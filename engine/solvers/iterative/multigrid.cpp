@@ -1,26 +1,13 @@
 #include "engine/solvers/iterative/multigrid.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "engine/solvers/iterative/aggregates.h"
+#include "engine/solvers/iterative/multigrid_blocks.h"
 
 namespace isochor {
 namespace {
-
-constexpr Index grain = 256;
-constexpr int modes_per_node = 6;
-
-// Runs body<3>() or body<6>().
-template <class Body>
-void with_size(int size, const Body& body) {
-  if (size == 3)
-    body(std::integral_constant<int, 3>());
-  else
-    body(std::integral_constant<int, 6>());
-}
 
 // Dense solves up to this many unknowns; a coarsest level that is larger is only smoothed.
 constexpr Index dense_limit = 1800;
@@ -44,12 +31,6 @@ void fill_pattern(BlockMatrix& m, const Unite& unite) {
     m.start.push_back(static_cast<std::int64_t>(m.column.size()));
   }
   m.column.shrink_to_fit();
-}
-
-template <class Visit>
-void for_row(const BlockMatrix& m, Index row, const Visit& visit) {
-  for (auto k = m.start[at(row)]; k < m.start[at(row) + 1]; ++k)
-    visit(k, m.column[static_cast<std::size_t>(k)]);
 }
 
 }  // namespace
@@ -134,28 +115,6 @@ void Multigrid::factor(const RowLoop& loop, std::span<const double> modes, doubl
     project(loop, level, levels_[l + 1]);
   }
   if (dense_) factor_coarsest();
-}
-
-// Inverts the diagonal blocks with their eigenvalues made positive. Coordinates that do not exist are where
-// an eigenvalue is zero; any inverse is right for them.
-void Multigrid::invert_diagonal(const RowLoop& loop, Level& level) {
-  with_size(level.a.height, [&]<int B>(std::integral_constant<int, B>) {
-    using Block = Eigen::Matrix<double, B, B, Eigen::RowMajor>;
-    loop(level.a.rows, grain, [&](Index begin, Index end) {
-      for (Index i = begin; i < end; ++i) {
-        const Eigen::Map<const Block> block(level.a.value.data() + level.a.find(i, i) * (B * B));
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, B, B>> eigen(block);
-        auto magnitude = eigen.eigenvalues().cwiseAbs().eval();
-        const double largest = magnitude.maxCoeff();
-        for (int q = 0; q < B; ++q) {
-          if (!(magnitude[q] > 1e-10 * largest)) magnitude[q] = largest > 0 ? largest : 1;
-        }
-        Eigen::Map<Block> inverse(level.diagonal_inverse.data() + static_cast<std::ptrdiff_t>(i) * (B * B));
-        inverse =
-            eigen.eigenvectors() * magnitude.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
-      }
-    });
-  });
 }
 
 namespace {
@@ -251,128 +210,6 @@ void Multigrid::prolongate_tentative(const RowLoop& loop, Level& level, Level& c
   });
 }
 
-// P = (I - omega D^-1 A) P_tentative.
-void Multigrid::smooth_prolongation(const RowLoop& loop, Level& level) {
-  constexpr int m = modes_per_node;
-  const double omega = 4.0 / 3.0 / level.bound;
-  with_size(level.a.height, [&]<int B>(std::integral_constant<int, B>) {
-    using Square = Eigen::Matrix<double, B, B, Eigen::RowMajor>;
-    using Wide = Eigen::Matrix<double, B, m, Eigen::RowMajor>;
-    loop(level.a.rows, 64, [&](Index begin, Index end) {
-      for (Index i = begin; i < end; ++i) {
-        const auto first = level.p.start[at(i)], last = level.p.start[at(i) + 1];
-        std::fill(level.p.value.data() + first * (B * m), level.p.value.data() + last * (B * m), 0.0);
-        for_row(level.a, i, [&](std::int64_t k, Index j) {
-          Eigen::Map<Wide> to(level.p.value.data() + level.p.find(i, level.aggregate[at(j)]) * (B * m));
-          to.noalias() +=
-              Eigen::Map<const Square>(level.a.value.data() + k * (B * B)) *
-              Eigen::Map<const Wide>(level.tentative.data() + static_cast<std::ptrdiff_t>(j) * (B * m));
-        });
-        const Square weight = -omega * Eigen::Map<const Square>(level.diagonal_inverse.data() +
-                                                                static_cast<std::ptrdiff_t>(i) * (B * B));
-        for (auto k = first; k < last; ++k) {
-          Eigen::Map<Wide> block(level.p.value.data() + k * (B * m));
-          block = (weight * block).eval();
-        }
-        Eigen::Map<Wide> own(level.p.value.data() + level.p.find(i, level.aggregate[at(i)]) * (B * m));
-        own += Eigen::Map<const Wide>(level.tentative.data() + static_cast<std::ptrdiff_t>(i) * (B * m));
-      }
-    });
-  });
-}
-
-// The coarse matrix P^T (A P), block row by block row.
-void Multigrid::project(const RowLoop& loop, Level& level, Level& coarse) {
-  constexpr int m = modes_per_node;
-  with_size(level.a.height, [&]<int B>(std::integral_constant<int, B>) {
-    using Square = Eigen::Matrix<double, B, B, Eigen::RowMajor>;
-    using Wide = Eigen::Matrix<double, B, m, Eigen::RowMajor>;
-    using Coarse = Eigen::Matrix<double, m, m, Eigen::RowMajor>;
-    loop(level.a.rows, 64, [&](Index begin, Index end) {
-      for (Index i = begin; i < end; ++i) {
-        const auto first = level.ap.start[at(i)], last = level.ap.start[at(i) + 1];
-        std::fill(level.ap.value.data() + first * (B * m), level.ap.value.data() + last * (B * m), 0.0);
-        for_row(level.a, i, [&](std::int64_t k, Index j) {
-          const Square block = Eigen::Map<const Square>(level.a.value.data() + k * (B * B));
-          auto to = first;  // both rows ascend
-          for_row(level.p, j, [&](std::int64_t q, Index g) {
-            while (level.ap.column[static_cast<std::size_t>(to)] != g) ++to;
-            Eigen::Map<Wide>(level.ap.value.data() + to * (B * m)).noalias() +=
-                block * Eigen::Map<const Wide>(level.p.value.data() + q * (B * m));
-          });
-        });
-      }
-    });
-    loop(level.aggregates, 16, [&](Index begin, Index end) {
-      for (Index g = begin; g < end; ++g) {
-        const auto first = coarse.a.start[at(g)], last = coarse.a.start[at(g) + 1];
-        std::fill(coarse.a.value.data() + first * (m * m), coarse.a.value.data() + last * (m * m), 0.0);
-        for (auto k = level.p_start[at(g)]; k < level.p_start[at(g) + 1]; ++k) {
-          const auto place = static_cast<std::size_t>(k);
-          const Wide left = Eigen::Map<const Wide>(level.p.value.data() + level.p_by_column[place] * (B * m));
-          auto to = first;
-          for_row(level.ap, level.p_row[place], [&](std::int64_t q, Index j) {
-            while (coarse.a.column[static_cast<std::size_t>(to)] != j) ++to;
-            Eigen::Map<Coarse>(coarse.a.value.data() + to * (m * m)).noalias() +=
-                left.transpose() * Eigen::Map<const Wide>(level.ap.value.data() + q * (B * m));
-          });
-        }
-      }
-    });
-  });
-}
-
-void Multigrid::factor_coarsest() {
-  const Level& level = levels_.back();
-  const int b = level.a.height;
-  const auto n = static_cast<Eigen::Index>(level.x.size());
-  Eigen::Map<Eigen::MatrixXd> dense(coarse_.data(), n, n);
-  const auto fill = [&] {
-    dense.setZero();
-    for (Index i = 0; i < level.a.rows; ++i) {
-      for_row(level.a, i, [&](std::int64_t k, Index j) {
-        for (int p = 0; p < b; ++p) {
-          for (int q = 0; q < b; ++q) {
-            // Rounding in the projection is taken out, as it would take the symmetry.
-            const double half = 0.5 * level.a.value[static_cast<std::size_t>(k * b * b + p * b + q)];
-            dense(i * b + p, j * b + q) += half;
-            dense(j * b + q, i * b + p) += half;
-          }
-        }
-      });
-    }
-    for (Eigen::Index q = 0; q < n; ++q) {
-      if (dense(q, q) == 0 && dense.col(q).isZero(0)) dense(q, q) = 1;
-    }
-  };
-  fill();
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(dense);
-  // A pivot that only rounding kept above zero is no better than a negative one.
-  const auto pivots = dense.diagonal().array().square();
-  coarse_definite_ = cholesky.info() == Eigen::Success && pivots.minCoeff() > 1e-12 * pivots.maxCoeff();
-  if (coarse_definite_) return;
-  fill();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(dense);
-  const auto magnitude = eigen.eigenvalues().cwiseAbs().eval();
-  const double least = std::max(1e-10 * magnitude.maxCoeff(), 1e-300);
-  dense = eigen.eigenvectors() * magnitude.cwiseMax(least).cwiseInverse().asDiagonal() *
-          eigen.eigenvectors().transpose();
-}
-
-void Multigrid::solve_coarsest(std::span<const double> b, std::span<double> x) {
-  const auto n = static_cast<Eigen::Index>(b.size());
-  const Eigen::Map<const Eigen::MatrixXd> dense(coarse_.data(), n, n);
-  const Eigen::Map<const Eigen::VectorXd> right(b.data(), n);
-  Eigen::Map<Eigen::VectorXd> solution(x.data(), n);
-  if (coarse_definite_) {
-    solution = right;
-    dense.triangularView<Eigen::Lower>().solveInPlace(solution);
-    dense.transpose().triangularView<Eigen::Upper>().solveInPlace(solution);
-  } else {
-    solution.noalias() = dense * right;
-  }
-}
-
 // x += q(D^-1 A) D^-1 (b - A x), a Chebyshev polynomial.
 void Multigrid::smooth(const RowLoop& loop, Level& level, std::span<const double> b, std::span<double> x,
                        bool from_zero) {
@@ -437,7 +274,7 @@ void Multigrid::cycle(const RowLoop& loop, std::size_t index, std::span<const do
     }
   });
   cycle(loop, index + 1, coarse.b, coarse.x);
-  loop(level.a.rows, grain, [&](Index begin, Index end) {
+  loop(level.a.rows, block_grain, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) {
       double* const xi = x.data() + static_cast<std::ptrdiff_t>(i) * h;
       for_row(level.p, i, [&](std::int64_t k, Index g) {

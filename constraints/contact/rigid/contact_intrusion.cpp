@@ -59,7 +59,8 @@ Index ContactPool::passing(const StencilIncrement& increment, std::span<const Ve
   return count;
 }
 
-double ContactPool::entry(double t0, double t1, std::span<const Vec3> from, std::span<const Vec3> x) const {
+double ContactPool::intrusion(double t0, double t1, std::span<const Vec3> from,
+                              std::span<const Vec3> x) const {
   const RigidGeometry& g = geometry();
   // Of a cell: next to a side, where a node that is pushed may slip off, more of the way counts.
   constexpr double most = 0.5, most_at_side = 0.1;

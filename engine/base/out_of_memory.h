@@ -1,0 +1,18 @@
+// What calls say where memory runs out, in memory that a string has of its own where there is no other.
+#pragma once
+
+#include <new>
+#include <string>
+
+namespace isochor {
+
+inline std::string out_of_memory(const char* call) {
+  try {
+    return std::string(call) +
+           ": out of memory; take a coarser mesh or Solver::iterative, or give the process more";
+  } catch (const std::bad_alloc&) {
+    return "out of memory";
+  }
+}
+
+}  // namespace isochor
