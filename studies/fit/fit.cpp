@@ -54,8 +54,9 @@ class Problem {
     if (!material) return false;
     out.clear();
     for (const Curve& curve : curves_) {
+      const std::vector<double> predicted = stresses(*material.value(), curve.mode, curve.stretch);
       for (std::size_t i = 0; i < curve.stress.size(); ++i) {
-        out.push_back(stress(*material.value(), curve.mode, curve.stretch[i]) - curve.stress[i]);
+        out.push_back(predicted[i] - curve.stress[i]);
         if (!std::isfinite(out.back())) return false;
       }
     }

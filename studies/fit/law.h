@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,8 @@ struct Law {
 const std::vector<Law>& laws();
 Result<const Law*> find_law(const std::string& name);
 
-// The nominal stress of an incompressible block along its load [Pa]; not finite where the law has no value.
+// The nominal stresses of an incompressible block along its load [Pa]; not finite where the law has no value.
+std::vector<double> stresses(const MaterialModel& material, Mode mode, std::span<const double> stretches);
 double stress(const MaterialModel& material, Mode mode, double stretch);
 
 // I - 3 = tr C - 3 of an incompressible block.
