@@ -77,13 +77,14 @@ FiberResponse respond(const Family& f, double E) {
   return {psi, f.k1 * power * growth, f.k1 * (b - 1 + b * x) * power / E * growth};
 }
 
-// E and its first derivative at the F of one lane.
+// E and what its derivatives at the F of one lane are made of. The arrays are filled where they are asked
+// for: d and g by isochoric families only.
 struct FiberStrain {
   double E = 0;
-  double d[9] = {};  // dE/dF
-  double FH[9] = {}, h[9] = {};
   double J = 1, a = 1, q = 1;  // of isochoric families: J, J^(-2/3), H : C
-  double g[9] = {};            // dJ/dF
+  double FH[9], h[9];
+  double d[9];  // dE/dF
+  double g[9];  // dJ/dF
 };
 
 class FiberMaterial final : public Material {
@@ -142,10 +143,7 @@ class FiberMaterial final : public Material {
         e.E += h[3 * i + j] * (C - (i == j ? 1.0 : 0.0));
       }
     }
-    if (!family.isochoric) {
-      for (int i = 0; i < 9; ++i) e.d[i] = 2 * e.FH[i];
-      return e;
-    }
+    if (!family.isochoric) return e;
     for (int i = 0; i < 9; ++i) {
       const int row = i / 3, col = i % 3, r1 = 3 * ((row + 1) % 3), r2 = 3 * ((row + 2) % 3);
       const int c1 = (col + 1) % 3, c2 = (col + 2) % 3;
@@ -167,7 +165,11 @@ class FiberMaterial final : public Material {
         const FiberResponse e = strain_of_lane.J > 0 ? respond(f, strain_of_lane.E) : kNone;
         r.psi[l] += e.psi;
         if (want == Want::value) continue;
-        for (int i = 0; i < 9; ++i) r.P[i][l] += e.first * strain_of_lane.d[i];
+        if (f.isochoric) {
+          for (int i = 0; i < 9; ++i) r.P[i][l] += e.first * strain_of_lane.d[i];
+        } else {
+          for (int i = 0; i < 9; ++i) r.P[i][l] += 2 * e.first * strain_of_lane.FH[i];
+        }
       }
     }
   }
@@ -190,7 +192,8 @@ class FiberMaterial final : public Material {
           }
           second *= s.a;
         }
-        A[k] = e.second * s.d[i] * s.d[j] + e.first * second;
+        const double di = f.isochoric ? s.d[i] : 2 * s.FH[i], dj = f.isochoric ? s.d[j] : 2 * s.FH[j];
+        A[k] = e.second * di * dj + e.first * second;
       }
     }
   }

@@ -10,6 +10,7 @@
 
 #include "engine/base/text.h"
 #include "scenes/contact_watch.h"
+#include "scenes/law_limits.h"
 #include "scenes/outputs.h"
 #include "scenes/probes.h"
 #include "scenes/scene_file.h"
@@ -225,6 +226,8 @@ bool Run::stopped(const StepReport& report) {
     case StepStatus::rejected:
       result_.status = RunStatus::not_converged;
       result_.reason = report.reason;
+      if (const std::string limit = law_limit_reached(scene_, built_); !limit.empty())
+        result_.reason += "; " + limit;
       break;
     case StepStatus::invalid:
       result_.status = RunStatus::failed;

@@ -13,7 +13,7 @@ struct SolidPool::Lane {
   int point = 0;
   double F[9] = {};
   double volume_strain = 0;  // J - 1 without cancellation
-  VolumeResponse phi{};      // of the volume strain, where there are volume functions
+  VolumeResponse mean{};     // of the mean of J, where the strain is of it
 };
 
 namespace {
@@ -53,6 +53,14 @@ void add_volume_hessian(const double F[9], double s, double A[45]) {
   }
 }
 
+VolumeResponse point_response(VolumeStrain strain, double j_minus_1) {
+  if (strain == VolumeStrain::linear) return {j_minus_1, 1, 0};
+  const double J = 1 + j_minus_1;
+  if (J <= 0) return {-std::numeric_limits<double>::infinity(), 0, 0};
+  if (strain != VolumeStrain::logarithmic) return volume_response(strain, j_minus_1);
+  return {std::log1p(j_minus_1), 1 / J, -1 / (J * J)};
+}
+
 }  // namespace
 
 SolidPool::SolidPool(std::string name, std::shared_ptr<const SolidData> data,
@@ -71,19 +79,6 @@ double SolidPool::volume(Index stencil) const {
   double v = 0;
   for (int q = 0; q < data_.points; ++q) v += data_.weight[at(stencil * data_.points + q)];
   return v;
-}
-
-double SolidPool::mean_volume_strain(Index stencil, std::span<const Vec3> x,
-                                     std::span<const Vec3> rest) const {
-  double sum = 0, size = 0;
-  for (int q = 0; q < data_.points; ++q) {
-    const double w = data_.weight[at(stencil * data_.points + q)];
-    double F[9], strain;
-    deformation_gradient(stencil, q, x, rest, F, strain);
-    sum += w * strain;
-    size += w;
-  }
-  return sum / size;
 }
 
 void SolidPool::deformation_gradient(Index stencil, int point, std::span<const Vec3> x,
@@ -137,10 +132,11 @@ void SolidPool::evaluate(const StencilRequest& request, const StencilSlots& slot
       lane.stencil = s;
       lane.point = q;
       deformation_gradient(s, q, request.x, request.rest, lane.F, lane.volume_strain);
-      lane.phi = {};
-      if (functions > 0) lane.phi = volume_response(strain_, of_mean ? mean : lane.volume_strain);
-      // Each point contributes to the mean in proportion; how Phi bends is added cell by cell.
-      if (of_mean) lane.phi.second = 0;
+      if (of_mean) {
+        // Each point contributes to the mean in proportion; how Phi bends is added cell by cell.
+        lane.mean = volume_response(strain_, mean);
+        lane.mean.second = 0;
+      }
       if (count == kLanes) {
         flush(request, slots, lanes, count);
         count = 0;
@@ -149,30 +145,6 @@ void SolidPool::evaluate(const StencilRequest& request, const StencilSlots& slot
   }
   if (count > 0) flush(request, slots, lanes, count);
   if (of_mean && request.want == Want::hessian) add_bending_of_mean(request, slots);
-}
-
-// Of Phi(mean J): with v = integral of J - 1 over a cell of volume V the row is V Phi(v/V), whose second
-// derivative has Phi''/V dv dv^T beside Phi' d2v. The Jacobian in the slots is Phi' dv.
-void SolidPool::add_bending_of_mean(const StencilRequest& request, const StencilSlots& slots) const {
-  for (Index s = request.begin; s < request.end; ++s) {
-    const double multiplier = request.function_multiplier[at(s)];
-    const VolumeResponse phi = volume_response(strain_, mean_volume_strain(s, request.x, request.rest));
-    if (multiplier == 0 || phi.first == 0) continue;
-    double c = multiplier * phi.second / (volume(s) * phi.first * phi.first);
-    if (request.definiteness != Definiteness::exact && c < 0)
-      c = request.definiteness == Definiteness::absolute ? -c : 0;
-    const std::size_t n = nodes_[s].size();
-    const Vec3* d = slots.jacobian.data() + at(nodes_.offset[at(s)]);
-    Mat3* blocks = slots.hessian.data() + hessian_offset()[at(s)];
-    for (std::size_t b = 0; b < n; ++b) {
-      for (std::size_t a = b; a < n; ++a) {
-        double* block = blocks[a * (a + 1) / 2 + b].m.data();
-        for (std::size_t e = 0; e < 9; ++e) {
-          block[e] += c * d[a][static_cast<int>(e / 3)] * d[b][static_cast<int>(e % 3)];
-        }
-      }
-    }
-  }
 }
 
 void SolidPool::flush(const StencilRequest& request, const StencilSlots& slots, Lane* lanes,
@@ -209,7 +181,7 @@ void SolidPool::flush(const StencilRequest& request, const StencilSlots& slots, 
   // A logarithm of what is inside out: no value, whatever the material says.
   if (!has_logarithm(strain_) || data_.functions == 0) return;
   for (int l = 0; l < count; ++l) {
-    if (std::isinf(lanes[l].phi.value))
+    if (is_of_mean(strain_) ? std::isinf(lanes[l].mean.value) : 1 + lanes[l].volume_strain <= 0)
       slots.energy[at(lanes[l].stencil)] = std::numeric_limits<double>::infinity();
   }
 }
@@ -233,7 +205,8 @@ void SolidPool::definite_hessian(const StencilRequest& request, const Lane* lane
   for (int l = 0; l < count && data_.functions > 0; ++l) {
     const double sigma = strain_multiplier(request, lanes[l]);
     if (sigma == 0) continue;
-    const VolumeResponse& phi = lanes[l].phi;
+    const VolumeResponse phi =
+        is_of_mean(strain_) ? lanes[l].mean : point_response(strain_, lanes[l].volume_strain);
     G[l] = sigma * phi.second;
     H[l] = sigma * phi.first;
   }
@@ -281,9 +254,10 @@ void SolidPool::write(const StencilRequest& request, const StencilSlots& slots, 
   slots.energy[at(s)] += w * psi;
   const std::size_t functions = static_cast<std::size_t>(data_.functions);
   const double* N = data_.shape.data() + static_cast<std::size_t>(lane.point) * functions;
-  const VolumeResponse& phi = lane.phi;
+  VolumeResponse phi{};
   double sigma = 0;  // multiplier of the volume strain at this point
   if (functions > 0) {
+    phi = is_of_mean(strain_) ? lane.mean : point_response(strain_, lane.volume_strain);
     for (std::size_t k = 0; k < functions; ++k) slots.value[at(s) * functions + k] += w * N[k] * phi.value;
     if (request.want != Want::value) sigma = strain_multiplier(request, lane);
   }

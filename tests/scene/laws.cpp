@@ -145,6 +145,18 @@ TEST_CASE("constants of laws are refused in scene files where they mean nothing 
   CHECK(error_of(R"({"law": "isochoric_yeoh", "c": [1e4], "bulk": "inf"})") == "(none)");
 }
 
+TEST_CASE("a run that stops where Gent's law has no value any more says so") {
+  auto scene = parse_scene(
+      scene_with(R"({"law": "isochoric_gent", "mu": 1e4, "jm": 0.3, "poisson": 0.49})", kBox), "s.json", ".");
+  REQUIRE(scene.ok());
+  RunOptions options;
+  options.threads = 1;
+  const RunResult run = run_scene(scene.value(), options);
+  CHECK(run.status == RunStatus::not_converged);
+  // s^2 + 2/s = 3.3 at s = 1.3307.
+  CHECK_THAT(run.reason, Contains("body \"b\"") && Contains("jm = 0.3") && Contains("stretch of 1.3"));
+}
+
 TEST_CASE("fibers follow a field of the mesh file, in its cells or at its nodes") {
   const test::Scratch folder("fiber_field");
   Mesh mesh = std::move(box_mesh({{0, 0, 0}, {1, 1, 1}, {1, 1, 1}, CellType::tet4})).value();

@@ -30,7 +30,7 @@ def volume(
     *,
     name: str = ...,
     space: Literal["node", "element", "body", "ring", "zone", "none"] = ...,
-    strain: Literal["linear", "logarithmic"] = ...,
+    strain: Literal["by_law", "linear", "logarithmic", "mixed", "mean_logarithmic", "mean_mixed"] = ...,
     regions: Union[_Names, None] = ...,
     rings: int = ...,
     zones: Union[Sequence["_Zone"], None] = ...,
@@ -54,7 +54,7 @@ def volume(
     space:
         what has a row each; none: no rows: "node", "element", "body", "ring", "zone", "none" (default: "node")
     strain:
-        what a row measures: J - 1 or log J: "linear", "logarithmic" (default: "linear")
+        what a row measures, see volume: "by_law", "linear", "logarithmic", "mixed", "mean_logarithmic", "mean_mixed" (default: "by_law")
     regions:
         that have rows (default: all)
     rings:
