@@ -2,6 +2,7 @@
 // costs the compiler dear.
 #pragma once
 
+#include <span>
 #include <type_traits>
 
 #include "engine/solvers/front/block_matrix.h"
@@ -19,6 +20,9 @@ void with_size(int size, const Body& body) {
   else
     body(std::integral_constant<int, 6>());
 }
+
+// A symmetric matrix becomes the inverse with its eigenvalues made positive.
+void invert_magnitudes(std::span<double> matrix, std::size_t size);
 
 // Calls visit(place, column) for the blocks of a row.
 template <class Visit>

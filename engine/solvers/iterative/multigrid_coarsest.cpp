@@ -1,6 +1,5 @@
 // The coarsest level of a multigrid, solved by dense factors.
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "engine/solvers/iterative/multigrid.h"
@@ -38,11 +37,7 @@ void Multigrid::factor_coarsest() {
   coarse_definite_ = cholesky.info() == Eigen::Success && pivots.minCoeff() > 1e-12 * pivots.maxCoeff();
   if (coarse_definite_) return;
   fill();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(dense);
-  const auto magnitude = eigen.eigenvalues().cwiseAbs().eval();
-  const double least = std::max(1e-10 * magnitude.maxCoeff(), 1e-300);
-  dense = eigen.eigenvectors() * magnitude.cwiseMax(least).cwiseInverse().asDiagonal() *
-          eigen.eigenvectors().transpose();
+  invert_magnitudes(coarse_, level.x.size());
 }
 
 void Multigrid::solve_coarsest(std::span<const double> b, std::span<double> x) {
