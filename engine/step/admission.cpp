@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "engine/base/text.h"
-#include "engine/elements/volume_strain.h"
 
 namespace isochor {
 
@@ -33,11 +32,13 @@ bool lives_through_inversion(const Material& energy, Index element) {
 // Rows over a logarithm of J have no value below zero.
 bool has_logarithmic_rows(const BodyData& body, const RegionData& region) {
   for (std::size_t strain = 0; strain < kVolumeStrains; ++strain) {
-    if (has_logarithm(static_cast<VolumeStrain>(strain)) && region.volume_pool[strain] >= 0) return true;
+    const bool logarithm = static_cast<VolumeStrain>(strain) != VolumeStrain::linear;
+    if (logarithm && region.volume_pool[strain] >= 0) return true;
   }
   return std::any_of(body.spanning.begin(), body.spanning.end(), [&](const SpanningVolume& v) {
-    return has_logarithm(v.strain) && std::any_of(region.cells.begin(), region.cells.end(),
-                                                  [&](Index c) { return v.stencil_of_cell[at(c)] >= 0; });
+    return v.strain != VolumeStrain::linear &&
+           std::any_of(region.cells.begin(), region.cells.end(),
+                       [&](Index c) { return v.stencil_of_cell[at(c)] >= 0; });
   });
 }
 
