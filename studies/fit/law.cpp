@@ -1,5 +1,6 @@
 #include "studies/fit/law.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -145,26 +146,48 @@ Result<const Law*> find_law(const std::string& name) {
   return Error{"--law " + name + ": there is no such law to fit; there are " + known};
 }
 
-double stress(const MaterialModel& material, Mode mode, double stretch) {
-  // Stretches along x, y, z; z is free, and no volume is lost.
+namespace {
+
+// Stretches along x, y, z; z is free, and no volume is lost.
+std::array<double, 3> block(Mode mode, double stretch) {
   const double y =
       mode == Mode::uniaxial ? 1 / std::sqrt(stretch) : (mode == Mode::equibiaxial ? stretch : 1.0);
-  const std::array<double, 3> s{stretch, y, 1 / (stretch * y)};
+  return {stretch, y, 1 / (stretch * y)};
+}
+
+}  // namespace
+
+std::vector<double> stresses(const MaterialModel& material, Mode mode, std::span<const double> stretches) {
+  const auto energy = material.distortional();
+  constexpr auto lanes = static_cast<std::size_t>(kLanes);
+  std::vector<double> out(stretches.size());
   PointBatch batch{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (int l = 0; l < kLanes; ++l) batch.F[4 * i][l] = s[i];
-  }
   ResponseBatch response;
-  material.distortional()->evaluate(Want::gradient, batch, response);
-  // P - q F^-T, with the pressure q that frees z.
-  return response.P[0][0] - response.P[8][0] * s[2] / s[0];
+  for (std::size_t first = 0; first < stretches.size(); first += lanes) {
+    // The last batch repeats its last point.
+    const auto of_lane = [&](std::size_t l) {
+      return block(mode, stretches[std::min(first + l, stretches.size() - 1)]);
+    };
+    for (std::size_t l = 0; l < lanes; ++l) {
+      for (std::size_t i = 0; i < 3; ++i) batch.F[4 * i][l] = of_lane(l)[i];
+    }
+    energy->evaluate(Want::gradient, batch, response);
+    for (std::size_t l = 0; l < lanes && first + l < out.size(); ++l) {
+      const std::array<double, 3> s = of_lane(l);
+      // P - q F^-T, with the pressure q that frees z.
+      out[first + l] = response.P[0][l] - response.P[8][l] * s[2] / s[0];
+    }
+  }
+  return out;
+}
+
+double stress(const MaterialModel& material, Mode mode, double stretch) {
+  return stresses(material, mode, {&stretch, 1}).front();
 }
 
 double first_invariant(Mode mode, double stretch) {
-  const double y =
-      mode == Mode::uniaxial ? 1 / std::sqrt(stretch) : (mode == Mode::equibiaxial ? stretch : 1.0);
-  const double z = 1 / (stretch * y);
-  return stretch * stretch + y * y + z * z - 3;
+  const auto [x, y, z] = block(mode, stretch);
+  return x * x + y * y + z * z - 3;
 }
 
 }  // namespace isochor::fit

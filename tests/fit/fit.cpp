@@ -8,7 +8,6 @@
 #include "catch.h"
 #include "engine/elements/material_model.h"
 
-using Catch::Matchers::ContainsSubstring;
 using Catch::Matchers::WithinRel;
 using namespace isochor;
 using namespace isochor::fit;
