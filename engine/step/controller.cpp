@@ -256,7 +256,8 @@ double Controller::next_length(const Advance& a) {
   double dt = a.increment > 0.999 * remaining ? remaining : a.increment;
   // The end of half a turn is that of half a turn the other way. And what an obstacle runs over within an
   // increment may come out on any side of it.
-  while ((largest_turn(t, t + dt) > most_turn || largest_intrusion(t, t + dt) > 1) && dt > 1e-9 * a.h) dt *= 0.5;
+  while ((largest_turn(t, t + dt) > most_turn || largest_intrusion(t, t + dt) > 1) && dt > 1e-9 * a.h)
+    dt *= 0.5;
   return dt;
 }
 

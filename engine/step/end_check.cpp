@@ -109,8 +109,8 @@ std::string EndCheck::energy_gained(double h, const Trial& trial, const StoredEn
 // that the next step cannot use.
 bool EndCheck::may_stay_unfinished(const StoredEnergy& stored, SaddleReport& report) const {
   const bool bounds = context_.system().has_bounds();
-  const bool flatter =
-      verdict_.min_J < (bounds ? nearly_flat_with_bounds : nearly_flat) && verdict_.min_J < judge_state().min_J;
+  const bool flatter = verdict_.min_J < (bounds ? nearly_flat_with_bounds : nearly_flat) &&
+                       verdict_.min_J < judge_state().min_J;
   std::string why;
   if (flatter)
     why = "its iterate crushes cells to J = " + number(verdict_.min_J);

@@ -59,7 +59,8 @@ class BarrierStencils {
                         std::span<Vec3> stopped) const = 0;
   // How far what is prescribed (an obstacle) is moved from t0 to t1 into nodes that go from `from` to x, over
   // what can be met within one increment: more than 1 asks for a shorter one.
-  virtual double intrusion(double t0, double t1, std::span<const Vec3> from, std::span<const Vec3> x) const = 0;
+  virtual double intrusion(double t0, double t1, std::span<const Vec3> from,
+                           std::span<const Vec3> x) const = 0;
 
  protected:
   ~BarrierStencils() = default;

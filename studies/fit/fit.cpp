@@ -281,7 +281,8 @@ void look_at_stability(const MaterialModel& material, double largest, Fit& fit) 
   };
   fit.stable_from = last_rising(fit.looked_from);
   fit.stable_to = last_rising(fit.looked_to);
-  if (fit.stable_to >= largest) return;
+  fit.stable_in_data = fit.stable_to >= largest;
+  if (fit.stable_in_data) return;
   char text[200];
   std::snprintf(
       text, sizeof text,

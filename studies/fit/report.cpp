@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "engine/elements/material_model.h"
 
@@ -51,6 +52,7 @@ Json fit_json(const Fit& fit) {
   out["rms"] = number(fit.rms);
   out["worst"] = number(fit.worst);
   out["stable"] = {number(fit.stable_from), number(fit.stable_to)};
+  out["stable_in_data"] = fit.stable_in_data;
   out["looked_at"] = {number(fit.looked_from), number(fit.looked_to)};
   out["uncertainty_95"] = uncertainty;
   out["warnings"] = fit.warnings;
@@ -60,7 +62,7 @@ Json fit_json(const Fit& fit) {
 studies::Line predicted(const Fit& fit, Mode mode, double from, double to) {
   studies::Line line{fit.law, {}, {}};
   const auto material = material_of(fit);
-  constexpr int points = 160;
+  constexpr int points = 48;
   for (int i = 0; material && i <= points; ++i) {
     const double s = from + (to - from) * i / points;
     const double y = stress(*material.value(), mode, s);
@@ -93,7 +95,7 @@ studies::Section unmeasured(const std::vector<Curve>& curves, const std::vector<
   studies::Section section{
       "Modes that were not measured",
       "What the fitted laws answer there, up to the largest measured stretch: their spread is what "
-      "these data leave open."};
+      "these data leave open. Laws that turn over inside the data are left out."};
   double largest = 1;
   for (const Curve& c : curves)
     largest = std::max(largest, *std::max_element(c.stretch.begin(), c.stretch.end()));
@@ -104,7 +106,7 @@ studies::Section unmeasured(const std::vector<Curve>& curves, const std::vector<
     d.x = "stretch";
     d.y = "nominal stress [kPa]";
     for (const Fit* f : by_error(fits)) {
-      if (!f->keys.empty()) d.lines.push_back(predicted(*f, mode, 1, largest));
+      if (f->stable_in_data) d.lines.push_back(predicted(*f, mode, 1, largest));
     }
     section.diagrams.push_back(d);
   }
@@ -123,7 +125,8 @@ std::vector<const Fit*> by_error(const std::vector<Fit>& fits) {
   std::vector<const Fit*> order;
   for (const Fit& f : fits) order.push_back(&f);
   std::stable_sort(order.begin(), order.end(), [](const Fit* a, const Fit* b) {
-    return std::pair(!a->converged, a->rms) < std::pair(!b->converged, b->rms);
+    return std::tuple(!a->converged, !a->stable_in_data, a->rms) <
+           std::tuple(!b->converged, !b->stable_in_data, b->rms);
   });
   return order;
 }
@@ -185,15 +188,18 @@ studies::Page fits_page(const std::vector<Curve>& curves, const std::vector<Fit>
       "Intervals hold for errors of the measurement that are independent and alike; how far a law is from "
       "the "
       "material they do not say.";
-  studies::Section section{"Fits", "Laws in the order of their error."};
+  studies::Section section{
+      "Fits", "In the order of their errors, those that turn over inside the data behind the others."};
   for (const Curve& curve : curves) section.diagrams.push_back(diagram_of(curve, fits));
   studies::Table table{"", table_head(), {}};
+  studies::Table warnings{"What to mind", {"law", "warning"}, {}};
   for (const Fit* f : by_error(fits)) {
     if (!f->converged) table.failed.push_back(table.rows.size());
     table.rows.push_back(table_row(*f));
-    for (const std::string& w : f->warnings) page.notes.push_back(f->law + ": " + w);
+    for (const std::string& w : f->warnings) warnings.rows.push_back({f->law, w});
   }
   section.tables.push_back(table);
+  if (!warnings.rows.empty()) section.tables.push_back(warnings);
   page.sections.push_back(section);
   if (auto more = unmeasured(curves, fits); !more.diagrams.empty()) page.sections.push_back(more);
   return page;

@@ -19,7 +19,7 @@ studies::Page fits_page(const std::vector<Curve>& curves, const std::vector<Fit>
 // fit.csv: a row a measured point, a column a law [Pa].
 std::string fits_csv(const std::vector<Curve>& curves, const std::vector<Fit>& fits);
 
-// The rows of the table, best first.
+// Least error first; laws that turn over inside the data, and those that were not fitted, behind the others.
 std::vector<const Fit*> by_error(const std::vector<Fit>& fits);
 std::vector<std::string> table_head();
 std::vector<std::string> table_row(const Fit& fit);

@@ -5,8 +5,8 @@
 
 #include "catch.h"
 #include "constraints/layer/face_strain.h"
-#include "constraints/stencil/segment_pool.h"
 #include "constraints/stencil/face_pool.h"
+#include "constraints/stencil/segment_pool.h"
 #include "contract/formulas.h"
 #include "contract/scene_probe.h"
 

@@ -1,5 +1,5 @@
-// Newton's method where some pools couple (LaggedStencils::couples): their forces follow from no potential, the
-// matrix is unsymmetric, and there is neither an inertia to watch nor a merit function.
+// Newton's method where some pools couple (LaggedStencils::couples): their forces follow from no potential,
+// the matrix is unsymmetric, and there is neither an inertia to watch nor a merit function.
 //
 // A step is searched on the size of the residual,
 //   R^2 = sum |r_i|^2 / k_i + sum D_r (projection(lambda + theta / D) - lambda)^2 + sum k_i |gap_i|^2,
