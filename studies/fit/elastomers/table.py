@@ -33,7 +33,10 @@ def main():
         cells = []
         for law in LAWS:
             fit = fits[law]
-            turns = "" if fit["stable_in_data"] else f", turns over at {fit['stable'][1]:.3g}"
+            if fit["material"] is None:
+                cells.append("–")
+                continue
+            turns = "" if fit["stable"][1] >= found["curves"][0]["largest_stretch"] else f", turns over at {fit['stable'][1]:.3g}"
             cells.append(f"{constants(fit)} ({fit['r2']:.4f}{turns})")
         print(f"| {path.stem} | " + " | ".join(cells) + " |")
 
