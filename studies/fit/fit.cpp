@@ -148,7 +148,8 @@ Search search_from(const Problem& problem, const Law& law, const Values& unit, c
   out.converged = summary.termination_type == ceres::CONVERGENCE;
   out.reason = out.converged ? "" : summary.message;
   if (summary.termination_type == ceres::FAILURE)
-    out.reason = "the search ran into constants that the law refuses, as where its shear modulus is not positive";
+    out.reason =
+        "the search ran into constants that the law refuses, as where its shear modulus is not positive";
   out.cost = summary.IsSolutionUsable() ? summary.final_cost : std::numeric_limits<double>::infinity();
   return out;
 }
