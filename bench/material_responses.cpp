@@ -41,7 +41,7 @@ Law elastic(const char* name, Result<MaterialPtr> (*make)(const ElasticConstants
 }
 
 // All are alike in y and z, as the uniaxial states assume.
-std::vector<Picture> pictures() {
+std::vector<Picture> elastic_pictures() {
   const Law reference = elastic("neo_hookean", neo_hookean);
   return {
       {"neo_hookean", {reference, elastic("neo_hookean_ogden", neo_hookean_ogden)}},
@@ -77,6 +77,11 @@ std::vector<Picture> pictures() {
            const double scale = 2 / (1.491 * 1.3 + 0.003 * 5 + 0.0237 * 2);
            return ogden({{{1.491 * scale, 1.3}, {0.003 * scale, 5}, {-0.0237 * scale, -2}}, nu});
          }}}},
+  };
+}
+
+std::vector<Picture> simple_pictures() {
+  return {
       {"corotated", {elastic("corotated", corotated), elastic("fixed_corotated", fixed_corotated)}},
       {"stvk",
        {elastic("stvk", stvk),
@@ -95,6 +100,11 @@ std::vector<Picture> pictures() {
            if (!matrix) return matrix;
            return with_fibers(std::move(matrix).value(), {{{1, 0, 0}, 1, 1, 0, {}}});
          }}}},
+  };
+}
+
+std::vector<Picture> uncoupled_pictures() {
+  return {
       {"uncoupled",
        {{"isochoric_mooney_rivlin, c2 = c1/4",
          [](double nu) {
@@ -139,6 +149,11 @@ std::vector<Picture> pictures() {
            return isochoric_fung({0.5, 0.2, 2.5, nu});
          }}},
        true},
+  };
+}
+
+std::vector<Picture> other_pictures() {
+  return {
       {"veronda_westmann",
        {{"isochoric_veronda_westmann, c2 = 0.5",
          [](double nu) {
@@ -198,6 +213,13 @@ std::vector<Picture> pictures() {
            return with_compression_penalty(std::move(base).value(), {2, 9});
          }}}},
   };
+}
+
+std::vector<Picture> pictures() {
+  std::vector<Picture> all;
+  for (const auto& part : {elastic_pictures(), simple_pictures(), uncoupled_pictures(), other_pictures()})
+    all.insert(all.end(), part.begin(), part.end());
+  return all;
 }
 
 struct Curve {
