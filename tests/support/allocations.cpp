@@ -15,7 +15,11 @@ std::atomic<long> g_allocations{0};
 // Calls of operator new that are left until one fails; beyond that they go on failing where asked to.
 std::atomic<bool> g_armed{false}, g_ever_after{false}, g_failed{false};
 std::atomic<long> g_left{0};
+}  // namespace
 
+#ifdef ISOCHOR_COUNT_ALLOCATIONS
+// Not under sanitizers, which pair every kind of new with its delete.
+namespace {
 void fail_if_it_is_time() {
   if (!g_armed.load(std::memory_order_relaxed)) return;
   const long left = g_left.fetch_sub(1) - 1;
@@ -49,7 +53,6 @@ void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
   std::free(p);
 }
 
-#ifdef ISOCHOR_COUNT_ALLOCATIONS
 // The C library's own allocator under its other name.
 extern "C" {
 void* __libc_malloc(std::size_t);
