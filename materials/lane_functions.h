@@ -71,6 +71,8 @@ inline Exponential exponential(const Lanes& v) {
 }
 // Infinity beyond the range of numbers, what is no number as it is.
 inline Lanes within_range(const Lanes& v, const Lanes& result) {
+  // What is not a number stays so.
+  // NOLINTNEXTLINE(misc-redundant-expression)
   return v > 709.7 ? broadcast(std::numeric_limits<double>::infinity()) : (v == v ? result : v);
 }
 
