@@ -105,14 +105,15 @@ void append(const Columns& c, double x, double y, Curve& curve) {
   curve.stress.push_back(c.true_stress ? y / stretch : y);
 }
 
-// Points beyond the range, and after the largest stress: there the specimen fails.
+// Points beyond the range, and those longer than at the largest stress: there the specimen fails.
 void select(const CurveOptions& options, Curve& curve) {
   const auto peak = std::max_element(curve.stress.begin(), curve.stress.end()) - curve.stress.begin();
+  const double failure = curve.stretch[static_cast<std::size_t>(peak)];
   Curve kept{curve.name, curve.mode, {}, {}, {}};
   std::size_t after = 0, outside = 0;
   for (std::size_t i = 0; i < curve.stretch.size(); ++i) {
     const double strain = curve.stretch[i] - 1;
-    if (!options.highest && static_cast<std::ptrdiff_t>(i) > peak) {
+    if (!options.highest && curve.stretch[i] > failure) {
       ++after;
     } else if ((options.lowest && strain < *options.lowest) ||
                (options.highest && strain > *options.highest)) {
@@ -122,7 +123,7 @@ void select(const CurveOptions& options, Curve& curve) {
       kept.stress.push_back(curve.stress[i]);
     }
   }
-  if (after > 0) kept.note = std::to_string(after) + " points after the largest stress are left out";
+  if (after > 0) kept.note = std::to_string(after) + " points beyond the largest stress are left out";
   if (outside > 0)
     kept.note += (kept.note.empty() ? "" : ", ") + std::to_string(outside) + " outside the range of strain";
   curve = std::move(kept);
@@ -172,6 +173,14 @@ const char* word(Mode mode) {
   return words[static_cast<int>(mode)];
 }
 
+Range range_of(const std::vector<Curve>& curves) {
+  Range range;
+  for (const Curve& curve : curves) {
+    for (const double s : curve.stretch) range = {std::min(range.least, s), std::max(range.most, s)};
+  }
+  return range;
+}
+
 Result<Curve> read_curve(const std::string& given, const CurveOptions& options) {
   std::string path = given;
   auto mode = split_mode(path);
@@ -200,10 +209,6 @@ Result<Curve> read_curve(const std::string& given, const CurveOptions& options) 
   curve.mode = mode.value();
   if (auto r = read_points(in, path, *columns, line_number, curve); !r) return Error{r.error()};
   if (curve.stress.empty()) return Error{path + ": the header has no points below it"};
-  select(options, curve);
-  if (curve.stress.size() < 3)
-    return Error{path + ": " + std::to_string(curve.stress.size()) +
-                 " points are left in the range of strain; widen --from and --to"};
   const double largest = std::max(std::abs(*std::max_element(curve.stress.begin(), curve.stress.end())),
                                   std::abs(*std::min_element(curve.stress.begin(), curve.stress.end())));
   if (largest < 10 || largest > 1e9) {
@@ -211,6 +216,15 @@ Result<Curve> read_curve(const std::string& given, const CurveOptions& options) 
     text << path << ": the largest stress is " << largest
          << " Pa, which no soft material has; check the unit (--stress-unit)";
     return Error{text.str()};
+  }
+  select(options, curve);
+  const auto deformed = std::count_if(curve.stretch.begin(), curve.stretch.end(),
+                                      [](double s) { return std::abs(s - 1) > 1e-9; });
+  if (deformed < 3) {
+    return Error{path + ": " + std::to_string(deformed) +
+                 " points that are stretched or compressed are left" +
+                 (curve.note.empty() ? "" : " (" + curve.note + ")") +
+                 "; a fit takes three: give more, or say the range by --from and --to"};
   }
   return curve;
 }

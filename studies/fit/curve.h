@@ -21,6 +21,12 @@ struct Curve {
   std::string note;             // what was left out, in words; empty: nothing
 };
 
+// Of the stretches of all curves, with rest in it.
+struct Range {
+  double least = 1, most = 1;
+};
+Range range_of(const std::vector<Curve>& curves);
+
 struct CurveOptions {
   // Names of columns; empty: found by what their names say.
   std::string strain_column, stress_column;

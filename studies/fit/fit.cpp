@@ -167,29 +167,29 @@ bool differentiate(const Problem& problem, const Values& unit, Search& best) {
   return true;
 }
 
-// Shear modulus that the data begin with: least squares on the points of the first tenth of the stretch, of
-// P = mu (what a neo-Hookean block answers with mu = 1).
+// Shear modulus that the data begin with: least squares of P = mu p on the quarter of each curve that is next
+// to rest, with p what a neo-Hookean block answers at mu = 1.
 double first_modulus(const std::vector<Curve>& curves) {
-  double above = 0, below = 0;
-  for (const Curve& curve : curves) {
-    const double last = *std::max_element(curve.stretch.begin(), curve.stretch.end());
-    for (std::size_t i = 0; i < curve.stretch.size(); ++i) {
-      const double s = curve.stretch[i];
-      if (s > 1 + 0.25 * (last - 1) && above > 0) continue;
+  for (const double share : {0.25, 1.0}) {  // all where nothing is so close
+    double above = 0, below = 0;
+    for (const Curve& curve : curves) {
+      const Range range = range_of({curve});
       const double power = curve.mode == Mode::uniaxial ? -2 : (curve.mode == Mode::equibiaxial ? -5 : -3);
-      const double one = s - std::pow(s, power);
-      above += one * curve.stress[i];
-      below += one * one;
+      for (std::size_t i = 0; i < curve.stretch.size(); ++i) {
+        const double s = curve.stretch[i], p = s - std::pow(s, power);
+        if (std::abs(s - 1) > share * (s > 1 ? range.most - 1 : 1 - range.least)) continue;
+        above += p * curve.stress[i];
+        below += p * p;
+      }
     }
+    if (below > 0 && above > 0) return above / below;
   }
-  return below > 0 && above > 0 ? above / below : 1e4;
+  return 1e4;
 }
 
-double largest_stretch(const std::vector<Curve>& curves) {
-  double most = 1;
-  for (const Curve& curve : curves)
-    for (const double s : curve.stretch) most = std::max(most, s);
-  return most;
+// The measured stretch that is farthest from rest.
+double farthest(const Range& range) {
+  return range.most * range.least > 1 ? range.most : range.least;
 }
 
 // The 0.975 quantile of Student's t, by its expansion in 1/n about that of the normal distribution
@@ -269,9 +269,9 @@ bool rises(const MaterialModel& material, double from, double to) {
   return true;
 }
 
-void look_at_stability(const MaterialModel& material, double largest, Fit& fit) {
-  fit.looked_from = 0.25;
-  fit.looked_to = 2 * largest;
+void look_at_stability(const MaterialModel& material, const Range& measured, Fit& fit) {
+  fit.looked_from = std::min(0.25, 0.5 * measured.least);
+  fit.looked_to = 2 * measured.most;
   constexpr int steps = 400;
   const auto last_rising = [&](double end) {
     double before = 1;
@@ -284,13 +284,14 @@ void look_at_stability(const MaterialModel& material, double largest, Fit& fit) 
   };
   fit.stable_from = last_rising(fit.looked_from);
   fit.stable_to = last_rising(fit.looked_to);
-  fit.stable_in_data = fit.stable_to >= largest;
+  fit.stable_in_data = fit.stable_to >= measured.most && fit.stable_from <= measured.least;
   if (fit.stable_in_data) return;
   char text[200];
   std::snprintf(
       text, sizeof text,
-      "the law is stable up to a stretch of %.3g, and data go to %.3g: take another law or a smaller range",
-      fit.stable_to, largest);
+      "the law is stable at stretches from %.3g to %.3g, and data go from %.3g to %.3g: take another "
+      "law or a smaller range",
+      fit.stable_from, fit.stable_to, measured.least, measured.most);
   fit.warnings.emplace_back(text);
 }
 
@@ -299,7 +300,7 @@ void look_at_stability(const MaterialModel& material, double largest, Fit& fit) 
 void look_at_other_modes(const Law& law, const Search& best, const Values& unit,
                          const Eigen::MatrixXd& covariance, const std::vector<Curve>& curves, double quantile,
                          Fit& fit) {
-  const double at = largest_stretch(curves);
+  const double at = farthest(range_of(curves));
   for (const Mode mode : kModes) {
     if (std::any_of(curves.begin(), curves.end(), [&](const Curve& c) { return c.mode == mode; })) continue;
     const auto predicted = [&](const Values& x) {
@@ -360,7 +361,7 @@ Fit fit(const Law& law, const std::vector<Curve>& curves, const FitOptions& opti
                  " constants; give more points or take a law with fewer constants";
     return out;
   }
-  const double modulus = first_modulus(curves), largest = largest_stretch(curves);
+  const double modulus = first_modulus(curves);
   double invariant = 0;
   for (const Curve& curve : curves)
     for (const double s : curve.stretch) invariant = std::max(invariant, first_invariant(curve.mode, s));
@@ -409,7 +410,7 @@ Fit fit(const Law& law, const std::vector<Curve>& curves, const FitOptions& opti
     out.constants[i].half_width =
         freedom > 0 ? quantile * std::sqrt(known(at, at)) * unit[i] : std::numeric_limits<double>::infinity();
   }
-  look_at_stability(*material.value(), largest, out);
+  look_at_stability(*material.value(), range_of(curves), out);
   look_at_other_modes(law, best, unit, known, curves, quantile, out);
   return out;
 }

@@ -40,9 +40,9 @@ struct Fit {
   // at, 1/4 to twice the largest measured stretch, where nothing falls.
   double stable_from = 0, stable_to = 0;
   double looked_from = 0, looked_to = 0;
-  bool stable_in_data = false;  // up to the largest measured stretch
-  // Half width of the 95 % interval of the predicted stress over the stress, at the largest measured stretch,
-  // of modes that were not measured.
+  bool stable_in_data = false;  // at all stretches between the measured ones and rest
+  // Half width of the 95 % interval of the predicted stress over the stress, at the measured stretch farthest
+  // from rest, of modes that were not measured.
   std::map<std::string, double> uncertainty;
   std::vector<std::string> warnings;
 };

@@ -85,7 +85,8 @@ studies::Diagram diagram_of(const Curve& curve, const std::vector<Fit>& fits) {
   d.lines.push_back(measured);
   const auto [from, to] = std::minmax_element(curve.stretch.begin(), curve.stretch.end());
   for (const Fit* f : by_error(fits)) {
-    if (!f->keys.empty()) d.lines.push_back(predicted(*f, curve.mode, std::min(1.0, *from), *to));
+    if (!f->keys.empty())
+      d.lines.push_back(predicted(*f, curve.mode, std::min(1.0, *from), std::max(1.0, *to)));
   }
   return d;
 }
@@ -94,11 +95,9 @@ studies::Diagram diagram_of(const Curve& curve, const std::vector<Fit>& fits) {
 studies::Section unmeasured(const std::vector<Curve>& curves, const std::vector<Fit>& fits) {
   studies::Section section{
       "Modes that were not measured",
-      "What the fitted laws answer there, up to the largest measured stretch: their spread is what "
+      "What the fitted laws answer there, in the range of stretch that was measured: their spread is what "
       "these data leave open. Laws that turn over inside the data are left out."};
-  double largest = 1;
-  for (const Curve& c : curves)
-    largest = std::max(largest, *std::max_element(c.stretch.begin(), c.stretch.end()));
+  const Range measured = range_of(curves);
   for (const Mode mode : {Mode::uniaxial, Mode::equibiaxial, Mode::pure_shear}) {
     if (std::any_of(curves.begin(), curves.end(), [&](const Curve& c) { return c.mode == mode; })) continue;
     studies::Diagram d;
@@ -106,7 +105,7 @@ studies::Section unmeasured(const std::vector<Curve>& curves, const std::vector<
     d.x = "stretch";
     d.y = "nominal stress [kPa]";
     for (const Fit* f : by_error(fits)) {
-      if (f->stable_in_data) d.lines.push_back(predicted(*f, mode, 1, largest));
+      if (f->stable_in_data) d.lines.push_back(predicted(*f, mode, measured.least, measured.most));
     }
     section.diagrams.push_back(d);
   }

@@ -146,6 +146,21 @@ TEST_CASE("where a law turns over is told") {
   CHECK(found.stable_to > 1.5);
 }
 
+TEST_CASE("compression counts as tension does") {
+  const std::vector<double> truth{8e3, 2e3};
+  const Curve pressed = curve_of(law("mooney_rivlin_2"), truth, Mode::uniaxial, 0.5);
+  const Curve pulled = curve_of(law("mooney_rivlin_2"), truth, Mode::uniaxial, 1.8);
+  for (const std::vector<Curve>& curves :
+       {std::vector<Curve>{pressed}, std::vector<Curve>{pressed, pulled}}) {
+    const Fit found = fit::fit(law("mooney_rivlin_2"), curves);
+    REQUIRE(found.converged);
+    CHECK_THAT(found.constants[0].value, WithinRel(truth[0], 1e-6));
+    CHECK_THAT(found.constants[1].value, WithinRel(truth[1], 1e-6));
+    CHECK(found.stable_in_data);
+    CHECK(found.uncertainty.at("equibiaxial") < 0.01);
+  }
+}
+
 TEST_CASE("more constants than points are refused") {
   const Fit found =
       fit::fit(law("ogden_3"), {curve_of(law("neo_hookean"), {1e4}, Mode::uniaxial, 2, 0, 1, 4)});
@@ -186,7 +201,10 @@ TEST_CASE("curves are read as people write them") {
   // After the largest stress the specimen fails.
   const Curve failed = read("isochor_f.csv", "strain,stress (kPa)\n0.1,1\n0.2,2\n0.3,3\n0.4,1\n");
   CHECK(failed.stretch.size() == 3);
-  CHECK_THAT(failed.note, ContainsSubstring("1 points after the largest stress"));
+  CHECK_THAT(failed.note, ContainsSubstring("1 points beyond the largest stress"));
+  const Curve both = read("isochor_q.csv", "strain,stress (kPa)\n-0.3,-9\n-0.2,-5\n0,0\n0.2,3\n0.4,5\n");
+  CHECK(both.stretch.size() == 5);
+  CHECK(read("isochor_r.csv", "strain,stress (kPa)\n-0.1,-2\n-0.2,-5\n-0.3,-9\n").stretch.size() == 3);
   CurveOptions range;
   range.lowest = 0.15;
   range.highest = 0.45;
@@ -204,8 +222,14 @@ TEST_CASE("what is no curve is refused with the line and the remedy") {
   CHECK_THAT(refusal("isochor_l.csv", "strain,stress (kPa)\n-2,1\n"), ContainsSubstring("stretch of -1"));
   CHECK_THAT(refusal("isochor_m.csv", "strain,stress (kPa)\n"), ContainsSubstring("no points"));
   CHECK_THAT(refusal("isochor_n.csv", "strain,stress (kPa)\n0.1,1\n0.2,2\n"),
-             ContainsSubstring("2 points are left"));
+             ContainsSubstring("2 points that are stretched"));
   CHECK_THAT(refusal("isochor_o.csv", "strain,stress (Pa)\n0.1,.1\n0.2,.2\n.3,.3\n"),
+             ContainsSubstring("check the unit"));
+  CHECK_THAT(refusal("isochor_s.csv", "stretch,stress (kPa)\n1,1\n1,1\n1,1\n"),
+             ContainsSubstring("0 points that are"));
+  CHECK_THAT(refusal("isochor_t.csv", "strain,stress (kPa)\n0.1,3\n0.2,2\n0.3,1\n"),
+             ContainsSubstring("largest stress"));
+  CHECK_THAT(refusal("isochor_u.csv", "strain,stress (kPa)\n0.1,0\n0.2,0\n0.3,0\n"),
              ContainsSubstring("check the unit"));
   CurveOptions named;
   named.strain_column = "x";
