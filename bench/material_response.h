@@ -17,6 +17,7 @@ struct Point {
   double at(int i, int j) const { return A[i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i]; }
 };
 
+// Not a number where the energy has no value.
 inline Point evaluate(const Material& energy, const std::array<double, 9>& F) {
   PointBatch batch{};
   ResponseBatch r;
@@ -25,7 +26,8 @@ inline Point evaluate(const Material& energy, const std::array<double, 9>& F) {
   }
   energy.evaluate(Want::hessian, batch, r);
   Point p;
-  for (int i = 0; i < 9; ++i) p.P[i] = r.P[i][0];
+  const bool valued = std::isfinite(r.psi[0]);
+  for (int i = 0; i < 9; ++i) p.P[i] = valued ? r.P[i][0] : std::numeric_limits<double>::quiet_NaN();
   for (int i = 0; i < 45; ++i) p.A[i] = r.A[i][0];
   return p;
 }
@@ -52,6 +54,8 @@ struct Block {
       // The pressure that frees the last direction: P - q F^-T.
       return p.P[0] - p.P[8] * c / a;
     }
+    // A state on another branch than the guess is none that the block comes to: it gives way in between.
+    const double guess = c;
     for (int i = 0; i < 60; ++i) {
       if (b_is_free) b = c;
       const Point p = evaluate(*energy, {a, 0, 0, 0, b, 0, 0, 0, c});
@@ -62,6 +66,7 @@ struct Block {
       if (std::abs(step) < 1e-13 * c) break;
       if (i == 59) return std::numeric_limits<double>::quiet_NaN();
     }
+    if (std::abs(c - guess) > 0.25 * guess) return std::numeric_limits<double>::quiet_NaN();
     if (b_is_free) b = c;
     return evaluate(*energy, {a, 0, 0, 0, b, 0, 0, 0, c}).P[0];
   }

@@ -149,7 +149,8 @@ Search search_from(const Problem& problem, const Law& law, const Values& unit, c
   out.reason = out.converged ? "" : summary.message;
   if (summary.termination_type == ceres::FAILURE)
     out.reason =
-        "the search ran into constants that the law refuses, as where its shear modulus is not positive";
+        "the search ran into constants that the law refuses or has no value with, as where its shear modulus "
+        "is not positive";
   out.cost = summary.IsSolutionUsable() ? summary.final_cost : std::numeric_limits<double>::infinity();
   return out;
 }
@@ -260,13 +261,10 @@ void measure_errors(const Problem& problem, const std::vector<double>& errors, F
 
 constexpr Mode kModes[] = {Mode::uniaxial, Mode::equibiaxial, Mode::pure_shear};
 
-// Whether the nominal stress of all modes rises between two stretches.
+// Whether the nominal stress of all modes rises between two stretches, and has a value at both.
 bool rises(const MaterialModel& material, double from, double to) {
-  for (const Mode mode : kModes) {
-    const double rise = stress(material, mode, to) - stress(material, mode, from);
-    if (std::isfinite(rise) && !(rise > 0)) return false;
-  }
-  return true;
+  return std::all_of(std::begin(kModes), std::end(kModes),
+                     [&](Mode mode) { return stress(material, mode, to) > stress(material, mode, from); });
 }
 
 void look_at_stability(const MaterialModel& material, const Range& measured, Fit& fit) {

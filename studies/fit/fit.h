@@ -36,8 +36,8 @@ struct Fit {
   double r2 = 0;             // 1 - sum of squared errors over that about the mean, of all points of stress
   double rms = 0;            // of the errors of stress [Pa]
   double worst = 0;          // largest |error of stress| [Pa]
-  // Stretches around 1 between which the nominal stress rises in all three modes; the ends of what was looked
-  // at, 1/4 to twice the largest measured stretch, where nothing falls.
+  // Stretches around 1 between which the nominal stress has a value and rises in all three modes; the ends of
+  // what was looked at, 1/4 to twice the largest measured stretch, where nothing falls.
   double stable_from = 0, stable_to = 0;
   double looked_from = 0, looked_to = 0;
   bool stable_in_data = false;  // at all stretches between the measured ones and rest

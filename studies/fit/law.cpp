@@ -175,7 +175,8 @@ std::vector<double> stresses(const MaterialModel& material, Mode mode, std::span
     for (std::size_t l = 0; l < lanes && first + l < out.size(); ++l) {
       const std::array<double, 3> s = of_lane(l);
       // P - q F^-T, with the pressure q that frees z.
-      out[first + l] = response.P[0][l] - response.P[8][l] * s[2] / s[0];
+      out[first + l] = std::isfinite(response.psi[l]) ? response.P[0][l] - response.P[8][l] * s[2] / s[0]
+                                                      : std::numeric_limits<double>::quiet_NaN();
     }
   }
   return out;

@@ -161,6 +161,19 @@ TEST_CASE("compression counts as tension does") {
   }
 }
 
+TEST_CASE("beyond its limit a law has no stress, and the range of stability ends there") {
+  Fit gent;
+  gent.keys = law("gent").keys({20e3, 10});
+  const MaterialPtr material = material_of(gent).value();
+  // I - 3 = 10 at equal stretches along x and y of 2.55.
+  CHECK(std::isfinite(stress(*material, Mode::equibiaxial, 2.54)));
+  CHECK(!std::isfinite(stress(*material, Mode::equibiaxial, 2.56)));
+  const Fit found = fit::fit(law("gent"), {curve_of(law("gent"), {20e3, 10}, Mode::uniaxial, 3)});
+  REQUIRE(found.converged);
+  CHECK(found.stable_to > 2.5);
+  CHECK(found.stable_to < 2.56);
+}
+
 TEST_CASE("more constants than points are refused") {
   const Fit found =
       fit::fit(law("ogden_3"), {curve_of(law("neo_hookean"), {1e4}, Mode::uniaxial, 2, 0, 1, 4)});
