@@ -63,6 +63,73 @@ void draw_own_constants(ChaosRandom& random, MaterialDef& m, double young) {
   }
 }
 
+void draw_constants_of_invariants(ChaosRandom& random, LawConstants& c, MaterialLaw law, double mu) {
+  switch (law) {
+    case MaterialLaw::yeoh:
+    case MaterialLaw::isochoric_yeoh:
+      c.c = {0.5 * mu};
+      if (random.chance(0.7)) c.c.push_back(mu * random.pick({-0.02, -0.001, 0.01, 0.1}));
+      if (c.c.size() == 2 && random.chance(0.7)) c.c.push_back(mu * random.pick({0.0, 1e-4, 1e-2}));
+      break;
+    case MaterialLaw::gent:
+    case MaterialLaw::isochoric_gent:
+      c.jm = random.pick({0.5, 5.0, 50.0, 500.0});
+      break;
+    case MaterialLaw::veronda_westmann:
+    case MaterialLaw::isochoric_veronda_westmann:
+      c.c2 = random.pick({0.01, 0.5, 5.0});
+      c.c1 = mu / c.c2;
+      break;
+    case MaterialLaw::holmes_mow:
+    case MaterialLaw::isochoric_holmes_mow:
+      c.beta = random.pick({0.0, 0.1, 1.0});
+      break;
+    case MaterialLaw::isochoric_mooney_rivlin:
+      c.c1 = random.pick({-0.1, 0.25, 0.5, 0.7}) * mu;
+      c.c2 = 0.5 * mu - c.c1;
+      if (random.chance(0.4)) c.c20 = mu * random.pick({-0.01, 0.01, 0.1});
+      if (random.chance(0.3)) c.c11 = 0.01 * mu;
+      if (random.chance(0.3)) c.c02 = 0.01 * mu;
+      break;
+    case MaterialLaw::isochoric_fung:
+      c.mu0 = random.between(0.1, 1) * mu;
+      c.mu1 = random.decades(-2, 1);
+      c.gamma = mu * random.between(0, 0.5);
+      break;
+    case MaterialLaw::isochoric_arruda_boyce:
+      c.locking_stretch = random.pick({1.2, 2.0, 5.0});
+      break;
+    case MaterialLaw::isochoric_ogden:
+      c.terms = {{mu / 4, 2}, {mu / 6, random.pick({-3.0, 1.3, 8.0})}};
+      break;
+    default:
+      break;
+  }
+}
+
+// Laws of invariants, which came later: drawn by a sequence of their own, which leaves other draws as they
+// were.
+void draw_law_of_invariants(ChaosRandom& random, MaterialDef& m, double young) {
+  double poisson = m.constants.poisson;
+  m.law = static_cast<MaterialLaw>(
+      random.whole(static_cast<int>(MaterialLaw::yeoh), static_cast<int>(MaterialLaw::isochoric_holmes_mow)));
+  const bool full = m.law < MaterialLaw::isochoric_mooney_rivlin;
+  if (full && poisson < 0.45) poisson = random.pick({0.45, 0.49, 0.5});
+  m.constants = {};
+  m.constants.poisson = poisson;
+  m.own = {};
+  using enum MaterialLaw;
+  const bool by_mu = m.law == gent || m.law == isochoric_gent || m.law == holmes_mow ||
+                     m.law == isochoric_holmes_mow || m.law == isochoric_arruda_boyce;
+  if (by_mu) m.constants.mu = young / 3;
+  if (m.law != holmes_mow) {
+    m.own.volume_energy =
+        random.pick({VolumeEnergyWord::by_law, VolumeEnergyWord::by_law, VolumeEnergyWord::quadratic,
+                     VolumeEnergyWord::logarithmic, VolumeEnergyWord::mixed});
+  }
+  draw_constants_of_invariants(random, m.own, m.law, young / 3);
+}
+
 MaterialDef draw_material(ChaosRandom& random, const ChaosDraft& draft, DraftBody& body, double poisson) {
   MaterialDef m;
   if (random.chance(0.7)) m.law = static_cast<MaterialLaw>(random.whole(0, 14));
@@ -107,6 +174,9 @@ void draw_materials(ChaosRandom& random, const ChaosDraft& draft, SceneBody& def
   for (const std::string& region : body.regions) {
     double own = same ? poisson : (random.chance(0.45) ? 0.5 : kPoissons[random.whole(0, 6)]);
     MaterialDef m = draw_material(random, draft, body, own);
+    ChaosRandom later =
+        draft.random("law of invariants " + std::to_string(draft.bodies.size()) + " " + region);
+    if (later.chance(0.3)) draw_law_of_invariants(later, m, draft.young);
     m.region = body.regions.size() > 1 ? region : "";
     const bool fields = body.regions.size() == 1 && body.cells > 0;
     if (fields && random.chance(0.08)) {
