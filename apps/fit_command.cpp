@@ -30,7 +30,7 @@ Result<std::vector<const fit::Law*>> laws_of(const FitArguments& a) {
   std::vector<const fit::Law*> out;
   for (const std::string& name : a.laws) {
     auto law = fit::find_law(name);
-    if (!law) return Error{law.error()};
+    if (!law) return law.failure();
     out.push_back(law.value());
   }
   for (const fit::Law& law : fit::laws()) {

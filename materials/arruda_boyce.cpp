@@ -41,7 +41,7 @@ Result<std::array<double, 5>> betas(std::string_view name, const ArrudaBoyceCons
   constexpr const char* keys[] = {"beta1", "beta2", "beta3", "beta4"};
   std::array<double, 5> beta{1, 0, 0, 0, 0};
   for (std::size_t i = 0; i < 4; ++i) {
-    if (auto r = not_negative(name, keys[i], given[i]); !r) return Error{r.error()};
+    if (auto r = not_negative(name, keys[i], given[i]); !r) return r.failure();
     beta[i + 1] = given[i];
     if (given[i] != 0 && c.locking_stretch != 0) {
       return Error{std::string(name) + ": both " + keys[i] + " = " + number(given[i]) +
@@ -60,9 +60,9 @@ Result<std::array<double, 5>> betas(std::string_view name, const ArrudaBoyceCons
 }
 
 Result<MaterialPtr> make(std::string_view name, const ArrudaBoyceConstants& c, bool isochoric) {
-  if (auto r = not_negative(name, "mu", c.mu); !r) return Error{r.error()};
+  if (auto r = not_negative(name, "mu", c.mu); !r) return r.failure();
   auto beta = betas(name, c);
-  if (!beta) return Error{beta.error()};
+  if (!beta) return beta.failure();
   return strain_model(
       {name, "mu (1 + 3 beta1 + 9 beta2 + 27 beta3 + 81 beta4)", c.poisson, c.volume, isochoric},
       ArrudaBoyceStrain{c.mu, beta.value()}, Stability::known);

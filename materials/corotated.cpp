@@ -43,7 +43,7 @@ struct CorotatedEnergy {
 
 Result<MaterialPtr> make(std::string_view name, const ElasticConstants& constants, bool by_volume) {
   auto e = linear_elastic(name, constants, 0);
-  if (!e) return Error{e.error()};
+  if (!e) return e.failure();
   const LinearElastic& small = e.value();
   auto rows = inverse_kappa(name, small, 0, constants.bulk_choice);
   const auto energy = [&](double lambda) {

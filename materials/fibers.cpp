@@ -356,7 +356,7 @@ Result<MaterialPtr> with_fibers(MaterialPtr matrix, const std::vector<FiberFamil
   for (std::size_t i = 0; i < families.size(); ++i) {
     const FiberFamily& f = families[i];
     const std::string who = "fibers[" + std::to_string(i) + "]: ";
-    if (auto r = check(who, f); !r) return Error{r.error()};
+    if (auto r = check(who, f); !r) return r.failure();
     Family family{f.k1, f.k2, f.law, f.exponent, f.isochoric, f.straight_modulus, f.straight_stretch, {}};
     for (const Vec3& a : f.directions) family.H.push_back(structure(a, f.dispersion));
     if (f.directions.empty()) family.H.push_back(structure(f.direction, f.dispersion));

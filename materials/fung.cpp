@@ -8,7 +8,7 @@ namespace {
 
 Result<MaterialPtr> make(std::string_view name, const FungConstants& c, bool isochoric) {
   for (const auto& [key, value] : {std::pair{"mu0", c.mu0}, {"mu1", c.mu1}, {"gamma", c.gamma}}) {
-    if (auto r = not_negative(name, key, value); !r) return Error{r.error()};
+    if (auto r = not_negative(name, key, value); !r) return r.failure();
   }
   return strain_model({name, "mu0 + gamma mu1", c.poisson, c.volume, isochoric},
                       ExponentialStrain{c.mu0, c.gamma * c.mu1, c.mu1}, Stability::known);

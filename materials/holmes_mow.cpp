@@ -39,7 +39,7 @@ Result<MaterialPtr> full(std::string_view name, const HolmesMowConstants& c) {
   }
   // kappa = lambda_L: that is what lambda_of_strain = 0 says.
   auto small = small_strain_of({name, "mu", c.poisson, c.volume, false}, c.mu, 0);
-  if (!small) return Error{small.error()};
+  if (!small) return small.failure();
   const LinearElastic& e = small.value().elastic;
   const auto energy = [&](double lambda) -> std::shared_ptr<const Material> {
     return std::make_shared<StrainMaterial<HolmesMowEnergy>>(name, HolmesMowEnergy{c.mu, lambda, c.beta});
@@ -55,13 +55,13 @@ Result<MaterialPtr> full(std::string_view name, const HolmesMowConstants& c) {
 
 Result<MaterialPtr> holmes_mow(const HolmesMowConstants& constants) {
   constexpr std::string_view name = "holmes_mow";
-  if (auto r = not_negative(name, "beta", constants.beta); !r) return Error{r.error()};
+  if (auto r = not_negative(name, "beta", constants.beta); !r) return r.failure();
   return full(name, constants);
 }
 
 Result<MaterialPtr> isochoric_holmes_mow(const HolmesMowConstants& c) {
   constexpr std::string_view name = "isochoric_holmes_mow";
-  if (auto r = not_negative(name, "beta", c.beta); !r) return Error{r.error()};
+  if (auto r = not_negative(name, "beta", c.beta); !r) return r.failure();
   return strain_model({name, "mu", c.poisson, c.volume, true}, ExponentialStrain{0, c.mu, c.beta},
                       Stability::known);
 }

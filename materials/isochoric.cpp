@@ -45,7 +45,7 @@ struct IsochoricEnergy {
 
 Result<MaterialPtr> make(std::string_view name, const ElasticConstants& constants, double threshold) {
   auto e = linear_elastic(name, constants, -0.99);
-  if (!e) return Error{e.error()};
+  if (!e) return e.failure();
   const LinearElastic& small = e.value();
   const auto energy = [&](double kappa) {
     return std::make_shared<InvariantMaterial<IsochoricEnergy>>(name,

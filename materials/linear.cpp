@@ -58,7 +58,7 @@ class LinearMaterial final : public Material {
 
 Result<MaterialPtr> linear(const ElasticConstants& constants) {
   auto e = linear_elastic("linear", constants, -0.99);
-  if (!e) return Error{e.error()};
+  if (!e) return e.failure();
   const LinearElastic& small = e.value();
   EnergyModel m{
       "linear", small, small.inverse_bulk, std::make_shared<LinearMaterial>(small.mu, -2 * small.mu / 3),

@@ -33,7 +33,7 @@ namespace {
 
 Result<MaterialPtr> make(std::string_view name, const ElasticConstants& constants, VolumeTerm term) {
   auto e = linear_elastic(name, constants, 0);
-  if (!e) return Error{e.error()};
+  if (!e) return e.failure();
   const LinearElastic& small = e.value();
   auto rows = inverse_kappa(name, small, 0, constants.bulk_choice);
   const auto energy = [&](double lambda) {

@@ -145,7 +145,7 @@ Result<MaterialPtr> make(std::string_view name, const OgdenConstants& c, bool is
   const bool quadratic = c.volume.energy == VolumeEnergy::quadratic;
   const double of_strain = isochoric ? -2 * mu / 3 : (quadratic ? -sum : 0);
   auto small = small_strain_of({name, "sum of mu alpha / 2", c.poisson, c.volume, isochoric}, mu, of_strain);
-  if (!small) return Error{small.error()};
+  if (!small) return small.failure();
   const double inverse = small.value().inverse_kappa;
   const auto energy = [&](double kappa) -> std::shared_ptr<const Material> {
     return std::make_shared<OgdenMaterial>(

@@ -10,10 +10,10 @@ template <class W>
 Result<MaterialPtr> stable(std::string_view name, const ElasticConstants& constants, double mu_factor,
                            double kappa_shift) {
   auto e = linear_elastic(name, constants, -0.99);
-  if (!e) return Error{e.error()};
+  if (!e) return e.failure();
   const LinearElastic& small = e.value();
   auto consistent = inverse_kappa(name, small, kappa_shift * small.mu);
-  if (!consistent) return Error{consistent.error()};
+  if (!consistent) return consistent.failure();
   auto rows = inverse_kappa(name, small, kappa_shift * small.mu, constants.bulk_choice);
   const W strain{mu_factor * small.mu};
   EnergyModel m{name, small, rows.value(), shifted_energy(name, strain, 0), nullptr, true};

@@ -33,7 +33,7 @@ Result<SmallStrain> small_strain_of(const StrainLaw& law, double mu, double lamb
     c.lambda = bulk + lambda_of_strain;
   }
   auto e = linear_elastic(law.name, c, -0.99);
-  if (!e) return Error{e.error()};
+  if (!e) return e.failure();
   SmallStrain small;
   small.elastic = e.value();
   small.elastic.mu = mu;
@@ -42,7 +42,7 @@ Result<SmallStrain> small_strain_of(const StrainLaw& law, double mu, double lamb
     return small;
   }
   auto inverse = inverse_kappa(law.name, e.value(), -lambda_of_strain);
-  if (!inverse) return Error{inverse.error()};
+  if (!inverse) return inverse.failure();
   small.inverse_kappa = inverse.value();
   return small;
 }

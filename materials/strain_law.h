@@ -138,7 +138,7 @@ Result<MaterialPtr> strain_model(const StrainLaw& law, const W& strain, Stabilit
     lambda = 4 * second + (law.volume.energy == VolumeEnergy::quadratic ? -2 * w1 : 4 * w2);
   }
   auto small = small_strain_of(law, mu, lambda);
-  if (!small) return Error{small.error()};
+  if (!small) return small.failure();
   const double inverse = small.value().inverse_kappa;
   const auto energy = [&](double kappa) -> std::shared_ptr<const Material> {
     const VolumeTerms terms{law.volume.energy, kappa, balance};

@@ -15,7 +15,7 @@ std::string path_in(const std::string& folder, const std::string& file) {
 Result<LatticeBody> make_lattice(const LatticeMesh& def, const std::string& folder) {
   const std::string path = path_in(folder, def.surface);
   auto surface = read_surface(path);
-  if (!surface) return Error{surface.error()};
+  if (!surface) return surface.failure();
   LatticeDef lattice;
   lattice.points = std::move(surface.value().points);
   for (Vec3& p : lattice.points) p = def.scale * p + def.offset;
@@ -24,7 +24,7 @@ Result<LatticeBody> make_lattice(const LatticeMesh& def, const std::string& fold
   lattice.samples = def.samples;
   lattice.keep_apart = def.keep_apart;
   auto made = lattice_mesh(lattice);
-  if (!made) return Error{made.error()};
+  if (!made) return made.failure();
   LatticeBody body;
   body.mesh = std::move(made.value().mesh);
   body.mesh.source = path + " in a lattice";

@@ -9,11 +9,11 @@ namespace {
 Result<void> add_bodies(const SceneDef& scene, const BuildOptions& options, BuiltScene& built) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     auto made = make_body(scene.bodies[b], scene.folder, place("bodies", b));
-    if (!made) return Error{made.error()};
+    if (!made) return made.failure();
     built.surfaces.push_back(std::move(made.value().surface));
     if (options.parts) options.parts->bodies.push_back(made.value().def);
     auto id = built.world.add_body(std::move(made.value().def));
-    if (!id) return Error{id.error()};
+    if (!id) return id.failure();
     built.bodies.push_back(id.value());
   }
   return {};
@@ -23,7 +23,7 @@ Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, Bui
   EffectAdder adder(scene, [&](const EffectKind& kind, EffectPtr effect) -> Result<void> {
     if (options.parts) options.parts->effects.push_back(effect);
     auto id = built.world.add(std::move(effect));
-    if (!id) return Error{id.error()};
+    if (!id) return id.failure();
     built.effects[&kind].push_back(id.value());
     return {};
   });
@@ -75,18 +75,18 @@ Result<void> set_motion(const SceneDef& scene, BuiltScene& built) {
 }  // namespace
 
 Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
-  if (auto r = check_scene(scene); !r) return Error{r.error()};
+  if (auto r = check_scene(scene); !r) return r.failure();
   WorldOptions world_options = scene.analysis.options;
   world_options.scheme = make_scheme(scene.analysis);
   world_options.threads = options.threads;
   auto world = World::create(std::move(world_options));
-  if (!world) return Error{world.error()};
+  if (!world) return world.failure();
   BuiltScene built{std::move(world).value()};
-  if (auto r = add_bodies(scene, options, built); !r) return Error{r.error()};
-  if (auto r = add_effects(scene, options, built); !r) return Error{r.error()};
-  if (auto r = built.world.compile(); !r) return Error{r.error()};
-  if (auto r = check_watched(scene, built); !r) return Error{r.error()};
-  if (auto r = set_motion(scene, built); !r) return Error{r.error()};
+  if (auto r = add_bodies(scene, options, built); !r) return r.failure();
+  if (auto r = add_effects(scene, options, built); !r) return r.failure();
+  if (auto r = built.world.compile(); !r) return r.failure();
+  if (auto r = check_watched(scene, built); !r) return r.failure();
+  if (auto r = set_motion(scene, built); !r) return r.failure();
   return built;
 }
 

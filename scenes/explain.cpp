@@ -90,22 +90,22 @@ Result<CompiledScene> compile_parts(const SceneParts& parts, bool statics) {
   CompiledScene out;
   Builder builder;
   for (const BodyDef& body : parts.bodies) {
-    if (auto r = builder.add_body(body); !r) return Error{r.error()};
+    if (auto r = builder.add_body(body); !r) return r.failure();
   }
   for (const EffectPtr& e : parts.effects) {
-    if (auto r = e->check(); !r) return Error{r.error()};
-    if (auto r = e->declare(builder); !r) return Error{r.error()};
+    if (auto r = e->check(); !r) return r.failure();
+    if (auto r = e->declare(builder); !r) return r.failure();
   }
-  if (auto r = builder.build_solids(); !r) return Error{r.error()};
+  if (auto r = builder.build_solids(); !r) return r.failure();
   for (const EffectPtr& e : parts.effects) {
     auto instance = e->build(builder);
-    if (!instance) return Error{instance.error()};
+    if (!instance) return instance.failure();
     out.instances.push_back(std::move(instance).value());
   }
   auto finished = builder.finish(statics);
-  if (!finished) return Error{finished.error()};
+  if (!finished) return finished.failure();
   auto system = System::compile(std::move(finished).value());
-  if (!system) return Error{system.error()};
+  if (!system) return system.failure();
   out.system = std::move(system).value();
   return out;
 }
@@ -113,9 +113,9 @@ Result<CompiledScene> compile_parts(const SceneParts& parts, bool statics) {
 Result<Explanation> explain(const SceneDef& scene) {
   SceneParts parts;
   auto built = build(scene, {1, &parts});
-  if (!built) return Error{built.error()};
+  if (!built) return built.failure();
   auto compiled = compile_parts(parts, scene.analysis.type == AnalysisType::statics);
-  if (!compiled) return Error{compiled.error()};
+  if (!compiled) return compiled.failure();
   const System& system = *compiled.value().system;
   Explanation out;
   out.nodes = system.nodes();

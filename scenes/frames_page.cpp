@@ -40,7 +40,7 @@ std::optional<std::string> attribute(const std::string& tag, const std::string& 
 
 Result<Times> read_collection(const fs::path& path) {
   const auto text = text_of(path);
-  if (!text) return Error{text.error()};
+  if (!text) return text.failure();
   Times out;
   const std::regex tag("<DataSet\\b[^>]*>");
   for (std::sregex_iterator it(text.value().begin(), text.value().end(), tag), end; it != end; ++it) {
@@ -98,7 +98,7 @@ Result<PageFrame> frame_of(const Bodies& bodies, double time, const std::vector<
   frame.fields.resize(bodies.scene.fields.size());
   for (std::size_t b = 0; b < files.size(); ++b) {
     const auto mesh = read_mesh(files[b]);
-    if (!mesh) return Error{mesh.error()};
+    if (!mesh) return mesh.failure();
     const Mesh& m = mesh.value();
     if (m.nodes.size() != bodies.mesh_nodes[b])
       return Error{files[b] + " has " + std::to_string(m.nodes.size()) + " nodes, the first frame " +
@@ -124,14 +124,14 @@ Result<Bodies> read_bodies(const std::vector<std::string>& first, const std::vec
   Bodies out;
   for (const std::string& file : first) {
     auto mesh = read_mesh(file);
-    if (!mesh) return Error{mesh.error()};
+    if (!mesh) return mesh.failure();
     out.nodes.push_back(add_page_mesh(out.scene, mesh.value(), {fs::path(file).stem().string()}));
     out.mesh_nodes.push_back(mesh.value().nodes.size());
     out.elements += static_cast<std::size_t>(mesh.value().cell_count());
   }
   for (const std::string& file : last) {
     auto mesh = read_mesh(file);
-    if (!mesh) return Error{mesh.error()};
+    if (!mesh) return mesh.failure();
     for (const MeshField& f : mesh.value().fields) {
       const bool known = std::any_of(out.scene.fields.begin(), out.scene.fields.end(),
                                      [&](const PageField& p) { return p.name == f.name; });
@@ -189,17 +189,17 @@ Result<FramesPage> write_frames_page(const std::string& folder) {
   if (!results_page_available())
     return Error{"this build has no results page: it was made without node and npm"};
   const auto collection = find_collection(folder);
-  if (!collection) return Error{collection.error()};
+  if (!collection) return collection.failure();
   const auto times = read_collection(collection.value());
-  if (!times) return Error{times.error()};
+  if (!times) return times.failure();
   auto bodies = read_bodies(times.value().begin()->second, times.value().rbegin()->second);
-  if (!bodies) return Error{bodies.error()};
+  if (!bodies) return bodies.failure();
   auto recorder = ResultsRecorder::start(bodies.value().scene);
-  if (!recorder) return Error{recorder.error()};
+  if (!recorder) return recorder.failure();
   for (const auto& [time, files] : times.value()) {
     const auto frame = frame_of(bodies.value(), time, files);
-    if (!frame) return Error{frame.error()};
-    if (auto r = recorder.value().append(frame.value()); !r) return Error{r.error()};
+    if (!frame) return frame.failure();
+    if (auto r = recorder.value().append(frame.value()); !r) return r.failure();
   }
   PageReport report;
   report.title = collection.value().stem().string();
@@ -210,7 +210,7 @@ Result<FramesPage> write_frames_page(const std::string& folder) {
   report.x_unit = "";
   if (const auto csv = text_of(fs::path(folder) / "steps.csv")) report.series = curves_of(csv.value());
   FramesPage out{(fs::path(folder) / "index.html").string(), times.value().size(), bodies.value().elements};
-  if (auto r = recorder.value().write(out.path, report); !r) return Error{r.error()};
+  if (auto r = recorder.value().write(out.path, report); !r) return r.failure();
   return out;
 }
 

@@ -14,7 +14,7 @@ struct Scene::Data {
 
 struct SceneMaker {
   static Result<Scene> make(Result<SceneDef> scene) {
-    if (!scene) return Error{scene.error()};
+    if (!scene) return scene.failure();
     return Scene(std::make_shared<const Scene::Data>(Scene::Data{std::move(scene).value()}));
   }
 };
@@ -58,7 +58,7 @@ Result<SceneWorld> Scene::world(int threads) const {
   BuildOptions options;
   options.threads = threads;
   auto made = build(scene, options);
-  if (!made) return Error{made.error()};
+  if (!made) return made.failure();
   BuiltScene built = std::move(made).value();
   SceneWorld out{std::move(built.world), {}, {}, {}};
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
@@ -86,7 +86,7 @@ Result<Vec3> SceneWorld::probe(const std::string& name) const {
   std::vector<std::pair<std::string, std::size_t>> all;
   for (std::size_t p = 0; p < probes.size(); ++p) all.emplace_back(probes[p].name, p);
   const auto found = find(all, name, "probe");
-  if (!found) return Error{found.error()};
+  if (!found) return found.failure();
   const Probe& p = probes[found.value()];
   const auto x = world.positions(p.body);
   Vec3 sum{};

@@ -12,7 +12,7 @@ namespace {
 Result<Mesh> make_mesh(const SceneBody& body, const std::string& folder, DisplaySurface& surface) {
   if (const auto* lattice = std::get_if<LatticeMesh>(&body.mesh)) {
     auto made = make_lattice(*lattice, folder);
-    if (!made) return Error{made.error()};
+    if (!made) return made.failure();
     surface = std::move(made.value().surface);
     return std::move(made.value().mesh);
   }

@@ -152,7 +152,7 @@ Result<MaterialPtr> make_native(const MaterialDef& def) {
   const HolmesMowConstants cartilage{mu, c.beta, poisson, part};
   const bool takes_mu = family_of(def.law) == Family::arruda_boyce || family_of(def.law) == Family::gent ||
                         family_of(def.law) == Family::holmes_mow;
-  if (auto r = check_common(def, takes_mu); !r) return Error{r.error()};
+  if (auto r = check_common(def, takes_mu); !r) return r.failure();
   switch (def.law) {
     case MaterialLaw::mooney_rivlin:
       return mooney_rivlin(mooney);
@@ -196,7 +196,7 @@ Result<MaterialPtr> make_native(const MaterialDef& def) {
 }  // namespace
 
 static Result<MaterialPtr> make_matrix(const MaterialDef& def) {
-  if (auto r = check_constants(def); !r) return Error{r.error()};
+  if (auto r = check_constants(def); !r) return r.failure();
   switch (def.law) {
     case MaterialLaw::neo_hookean:
       return neo_hookean(def.constants);
@@ -320,7 +320,7 @@ Result<MaterialPtr> make_material(const MaterialDef& def, const std::string& fol
   auto matrix = make_varied(def, folder);
   if (matrix && !def.fibers.empty()) {
     auto families = make_fibers(def, mesh);
-    if (!families) return Error{families.error()};
+    if (!families) return families.failure();
     matrix = with_fibers(std::move(matrix).value(), families.value());
   }
   const CompressionPenalty& penalty = def.compression_penalty;

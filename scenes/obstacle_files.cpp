@@ -10,14 +10,14 @@ namespace {
 Result<SolidPtr> read_solid(const Obstacle& o, const std::string& path) {
   if (o.shape == ObstacleShape::mesh) {
     auto surface = read_surface(path, o.scale);
-    if (!surface) return Error{surface.error()};
+    if (!surface) return surface.failure();
     return mesh_solid(surface.value());
   }
   if (o.spacing > 0) {
     auto surface = read_surface(path, o.scale);
-    if (!surface) return Error{surface.error()};
+    if (!surface) return surface.failure();
     auto grid = sampled_distances(surface.value(), o.spacing);
-    if (!grid) return Error{grid.error()};
+    if (!grid) return grid.failure();
     return field_solid(grid.value());
   }
   auto grid = read_distances(path, o.scale);

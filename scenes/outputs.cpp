@@ -188,7 +188,7 @@ Result<std::optional<RunCheckpoint>> RunOutputs::checkpoint_in(const std::string
   std::error_code code;
   if (!fs::exists(path, code)) return std::optional<RunCheckpoint>();
   auto checkpoint = read_checkpoint(path.string());
-  if (!checkpoint) return Error{checkpoint.error()};
+  if (!checkpoint) return checkpoint.failure();
   return std::optional(std::move(checkpoint).value());
 }
 
@@ -216,7 +216,7 @@ Result<RunOutputs> RunOutputs::reopen(const std::string& folder, const RunView& 
   // Frames of a page go with frames in files.
   if (outputs.last_frame_ >= 0 && scene.outputs.page) outputs.page_ = RunPage::start(view);
   auto frames = outputs.journal_.restart(checkpoint.page_bytes);
-  if (!frames) return Error{frames.error()};
+  if (!frames) return frames.failure();
   for (const PageFrame& frame : frames.value()) {
     if (outputs.page_) outputs.page_->append(frame);
   }

@@ -22,7 +22,7 @@ Result<End> run(SceneDef scene, Method method, Solver solver, int most_steps, in
   scene.analysis.options.solver = solver;
   End end;
   auto built = build(scene, {threads});
-  if (!built) return Error{built.error()};
+  if (!built) return built.failure();
   World& world = built.value().world;
   if (const auto compiled = world.compile(); !compiled) {
     end.refused = compiled.error();
@@ -75,11 +75,11 @@ std::vector<Probe> agreement_probes(const SceneDef& scene, std::span<const SameE
   for (const SameEnd& way : ways) {
     out.push_back([scene, way, steps, reference](const SceneDef&, int threads) -> Result<Numbers> {
       auto one = run(scene, way.method, way.solver, steps, threads);
-      if (!one) return Error{one.error()};
+      if (!one) return one.failure();
       if (!one.value().refused.empty()) return Numbers{{"refused", 1}};
       if (!*reference) {
         auto other = run(scene, Method::saddle_point, Solver::automatic, steps, threads);
-        if (!other) return Error{other.error()};
+        if (!other) return other.failure();
         *reference = std::move(other).value();
       }
       return compare(one.value(), **reference);

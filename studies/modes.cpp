@@ -34,14 +34,14 @@ Result<std::shared_ptr<const System>> bar(const Formulation& f, int nodes, bool 
   box.upper = {2, 1, 1};
   box.divisions = {2 * n, n, n};
   auto mesh = box_mesh(box);
-  if (!mesh) return Error{mesh.error()};
+  if (!mesh) return mesh.failure();
   body.mesh = std::move(mesh).value();
   body.element = f.element;
   ElasticConstants constants;
   constants.mu = 1;
   constants.bulk = bulk;
   auto material = neo_hookean(constants);
-  if (!material) return Error{material.error()};
+  if (!material) return material.failure();
   body.materials = {{"", std::move(material).value(), 1}};
   VolumeDef rows;
   rows.space = f.space;
@@ -52,7 +52,7 @@ Result<std::shared_ptr<const System>> bar(const Formulation& f, int nodes, bool 
   ends.where.surfaces = {"x0", "x1"};
   if (held) effects.push_back(dirichlet(ends));
   auto compiled = compile_parts({{std::move(body)}, effects}, held);
-  if (!compiled) return Error{compiled.error()};
+  if (!compiled) return compiled.failure();
   return compiled.value().system;
 }
 
@@ -136,10 +136,10 @@ double roughness(const System& system, const Vibrations& v, const Vector& mode, 
 Probe modes_probe(const Formulation& f, int nodes, double stretch) {
   return [&f, nodes, stretch](const SceneDef&, int) -> Result<Numbers> {
     auto made = bar(f, nodes, stretch > 0);
-    if (!made) return Error{made.error()};
+    if (!made) return made.failure();
     const std::shared_ptr<const System> system = made.value();
     auto found = vibrations(system, stretch);
-    if (!found) return Error{found.error()};
+    if (!found) return found.failure();
     const Vibrations& v = found.value();
     const Vector scale = v.mass.cwiseSqrt().cwiseInverse();
     const Matrix scaled = scale.asDiagonal() * v.stiffness * scale.asDiagonal();

@@ -20,7 +20,7 @@ struct Solved {
 
 Result<Solved> solve(const SceneDef& scene, int threads) {
   auto built = build(scene, {threads});
-  if (!built) return Error{built.error()};
+  if (!built) return built.failure();
   World& world = built.value().world;
   const StepPlan plan = plan_steps(scene.analysis);
   Solved out;
@@ -70,7 +70,7 @@ Result<Numbers> column_pressure(const SceneDef& scene, int threads) {
   const auto* box = std::get_if<BoxMeshDef>(&scene.bodies[0].mesh);
   if (!box) return Error{"the column is no box"};
   auto solved = solve(scene, threads);
-  if (!solved) return Error{solved.error()};
+  if (!solved) return solved.failure();
   const Solved& s = solved.value();
   std::vector<double> exact;
   for (const Vec3& p : s.center)
@@ -90,11 +90,11 @@ Probe pressure_against(SceneDef reference) {
       *kept = std::move(solved.value().pressure);
     }
     auto solved = solve(scene, threads);
-    if (!solved) return Error{solved.error()};
+    if (!solved) return solved.failure();
     const Solved& s = solved.value();
     if (s.pressure.size() != (*kept)->size()) return Error{"the reference has other cells"};
     auto rough = pressure_roughness(scene, threads);
-    if (!rough) return Error{rough.error()};
+    if (!rough) return rough.failure();
     Numbers out = rough.value();
     out["pressure error"] = distance(s.pressure, **kept, s.volume);
     out["least"] = *std::min_element(s.pressure.begin(), s.pressure.end());

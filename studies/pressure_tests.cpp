@@ -31,14 +31,14 @@ Result<Blocks> blocks(const Formulation& f, int n, double bulk, double stabiliza
   box.divisions = {n, n, n};
   if (f.hexahedra()) box.cell_type = CellType::hex8;
   auto mesh = box_mesh(box);
-  if (!mesh) return Error{mesh.error()};
+  if (!mesh) return mesh.failure();
   body.mesh = std::move(mesh).value();
   body.element = f.element;
   ElasticConstants constants;
   constants.mu = 1;
   constants.bulk = bulk;
   auto material = neo_hookean(constants);
-  if (!material) return Error{material.error()};
+  if (!material) return material.failure();
   body.materials = {{"", std::move(material).value(), 1}};
   VolumeDef rows;
   rows.space = f.space;
@@ -46,7 +46,7 @@ Result<Blocks> blocks(const Formulation& f, int n, double bulk, double stabiliza
   DirichletDef wall;
   wall.where.surfaces = {"x0"};
   auto compiled = compile_parts({{std::move(body)}, {volume(rows), dirichlet(wall)}}, true);
-  if (!compiled) return Error{compiled.error()};
+  if (!compiled) return compiled.failure();
   const auto system = compiled.value().system;
 
   const TbbParallel one(1);
@@ -104,9 +104,9 @@ Probe inf_sup_probe(const Formulation& f, int n) {
   return [&f, n](const SceneDef&, int) -> Result<Numbers> {
     // C = M_p / kappa without stabilization gives the mass matrix of the pressures; hard rows give the rest.
     auto mass = blocks(f, n, 1, 0);
-    if (!mass) return Error{mass.error()};
+    if (!mass) return mass.failure();
     auto hard = blocks(f, n, std::numeric_limits<double>::infinity(), f.stabilization);
-    if (!hard) return Error{hard.error()};
+    if (!hard) return hard.failure();
     const Blocks& h = hard.value();
     const Eigen::LLT<Matrix> cholesky(h.stiffness);
     if (cholesky.info() != Eigen::Success) return Error{"the stiffness at rest is not positive definite"};
@@ -133,9 +133,9 @@ namespace {
 Result<Matrix> scaled_schur(double stabilization, int n) {
   const Formulation& f = formulation("tet4_node");
   auto mass = blocks(f, n, 1, 0);
-  if (!mass) return Error{mass.error()};
+  if (!mass) return mass.failure();
   auto hard = blocks(f, n, std::numeric_limits<double>::infinity(), stabilization);
-  if (!hard) return Error{hard.error()};
+  if (!hard) return hard.failure();
   const Blocks& h = hard.value();
   const Eigen::LLT<Matrix> cholesky(h.stiffness);
   if (cholesky.info() != Eigen::Success) return Error{"the stiffness at rest is not positive definite"};
@@ -170,7 +170,7 @@ int conjugate_gradients(const Matrix& S, int most) {
 Probe dual_probe(double stabilization, int n) {
   return [stabilization, n](const SceneDef&, int) -> Result<Numbers> {
     auto schur = scaled_schur(stabilization, n);
-    if (!schur) return Error{schur.error()};
+    if (!schur) return schur.failure();
     const Eigen::SelfAdjointEigenSolver<Matrix> eigen(schur.value(), Eigen::EigenvaluesOnly);
     if (eigen.info() != Eigen::Success) return Error{"the eigenvalues did not converge"};
     const double least = eigen.eigenvalues().minCoeff(), largest = eigen.eigenvalues().maxCoeff();
@@ -187,7 +187,7 @@ Probe dual_probe(double stabilization, int n) {
 
 Result<Numbers> pressure_roughness(const SceneDef& scene, int threads) {
   auto built = build(scene, {threads});
-  if (!built) return Error{built.error()};
+  if (!built) return built.failure();
   World& world = built.value().world;
   const StepPlan plan = plan_steps(scene.analysis);
   for (int step = 0; step < plan.steps; ++step) {

@@ -31,7 +31,10 @@ struct Refused {
 }
 template <class T>
 T need(Result<T> result) {
-  if (!result) refuse(result.error());
+  if (!result) {
+    throw Refused{result.failure().kind == ErrorKind::no_memory ? ISO_NO_MEMORY : ISO_REFUSED,
+                  result.error()};
+  }
   if constexpr (!std::is_void_v<T>) return std::move(result).value();
 }
 

@@ -393,7 +393,7 @@ class CavityEffect final : public EffectSource {
 
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     auto list = builder.faces(def_.body, def_.surfaces, def_.name);
-    if (!list) return Error{list.error()};
+    if (!list) return list.failure();
     const BodyData& body = builder.body(def_.body);
     const auto per = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
     std::vector<Face> faces;
@@ -401,16 +401,16 @@ class CavityEffect final : public EffectSource {
       const auto first = list.value().begin() + static_cast<std::ptrdiff_t>(f);
       faces.emplace_back(first, first + static_cast<std::ptrdiff_t>(per));
     }
-    if (auto r = orient(body, faces, builder.rest(), who()); !r) return Error{r.error()};
+    if (auto r = orient(body, faces, builder.rest(), who()); !r) return r.failure();
     Vec3 origin{};
     for (const Face& f : faces)
       origin += (1.0 / static_cast<double>(faces.size())) * builder.rest()[at(f[0])];
     auto loops = boundary_loops(faces, who());
-    if (!loops) return Error{loops.error()};
+    if (!loops) return loops.failure();
     SymmetryCaps symmetry(builder, builder.length());
     std::vector<const std::vector<Index>*> fans;
     for (const auto& loop : loops.value()) {
-      if (auto r = check_opening(builder, body, loop); !r) return Error{r.error()};
+      if (auto r = check_opening(builder, body, loop); !r) return r.failure();
       const bool flat = symmetry.planar(loop);
       if (flat || !symmetry.add_loop(loop, per == 6 ? 2 : 1)) fans.push_back(&loop);
     }

@@ -111,7 +111,7 @@ class EpidermisEffect final : public EffectSource {
 
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     auto named = builder.faces(def_.body, def_.surfaces, def_.name);
-    if (!named) return Error{named.error()};
+    if (!named) return named.failure();
     const BodyData& body = builder.body(def_.body);
     const auto per_face = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
     const auto faces = distinct_faces(named.value(), per_face);

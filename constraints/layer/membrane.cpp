@@ -83,7 +83,7 @@ class MembraneEffect final : public EffectSource {
 
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     auto named = builder.faces(def_.body, def_.surfaces, def_.name);
-    if (!named) return Error{named.error()};
+    if (!named) return named.failure();
     const auto per_face = static_cast<std::size_t>(nodes_per_face(builder.body(def_.body).mesh.cell_type));
     const auto faces = distinct_faces(named.value(), per_face);
     const double mu = def_.young / (2 * (1 + def_.poisson));

@@ -89,7 +89,7 @@ class CableEffect final : public EffectSource {
     std::vector<PointInBody> points;
     for (const Vec3& X : def_.points) {
       auto point = embed(body, builder.rest(), X, who());
-      if (!point) return Error{point.error()};
+      if (!point) return point.failure();
       points.push_back(std::move(point).value());
     }
     auto pool = std::make_shared<SegmentPool>(def_.name, def_.from || def_.to);

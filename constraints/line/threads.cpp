@@ -114,7 +114,7 @@ class WindingEffect final : public EffectSource {
       std::optional<PointInBody> last;
       for (const Vec3& X : path) {
         auto point = embed(body, builder.rest(), X, who());
-        if (!point) return Error{point.error()};
+        if (!point) return point.failure();
         if (last) {
           if (auto r = pool->add(*last, point.value(), builder.rest()); !r) {
             return Error{who() + ": " + r.error()};
@@ -147,7 +147,7 @@ class StrainLimitEffect final : public EffectSource {
   }
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     auto faces = builder.faces(def_.body, def_.surfaces, def_.name);
-    if (!faces) return Error{faces.error()};
+    if (!faces) return faces.failure();
     const BodyData& body = builder.body(def_.body);
     const auto per = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
     if (per != 3 && per != 6)

@@ -179,7 +179,7 @@ class DampingEffect final : public EffectSource {
 
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     auto regions = builder.regions(def_.body, def_.regions, def_.name);
-    if (!regions) return Error{regions.error()};
+    if (!regions) return regions.failure();
     const BodyData& body = builder.body(def_.body);
     for (const std::size_t r : regions.value()) {
       const RegionData& region = body.regions[r];

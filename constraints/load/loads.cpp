@@ -63,7 +63,7 @@ class TractionEffect final : public EffectSource {
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     const std::vector<std::string> surface = {def_.surface};
     auto faces = builder.faces(def_.body, surface, def_.name);
-    if (!faces) return Error{faces.error()};
+    if (!faces) return faces.failure();
     const auto per = static_cast<std::size_t>(nodes_per_face(builder.body(def_.body).mesh.cell_type));
     std::vector<std::pair<Index, double>> area;
     double total = 0;
@@ -99,7 +99,7 @@ class PointForceEffect final : public EffectSource {
 
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     auto nodes = builder.select(def_.where, def_.name);
-    if (!nodes) return Error{nodes.error()};
+    if (!nodes) return nodes.failure();
     std::vector<std::pair<Index, Vec3>> forces;
     for (const Index node : nodes.value()) {
       forces.emplace_back(node, (1 / static_cast<double>(nodes.value().size())) * def_.force);

@@ -194,7 +194,7 @@ class PressureEffect final : public EffectSource {
 
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     auto list = outward_faces(builder, def_.body, def_.surfaces, "pressure \"" + def_.name + "\"");
-    if (!list) return Error{list.error()};
+    if (!list) return list.failure();
     const std::vector<Index>& faces = list.value();
     const auto per = static_cast<std::size_t>(nodes_per_face(builder.body(def_.body).mesh.cell_type));
     Vec3 origin{};

@@ -67,7 +67,7 @@ Result<std::vector<Index>> surface_faces(const Builder& builder, BodyId id,
 Result<std::vector<Index>> outward_faces(const Builder& builder, BodyId id,
                                          std::span<const std::string> surfaces, const std::string& who) {
   auto named = surface_faces(builder, id, surfaces, who);
-  if (!named) return Error{named.error()};
+  if (!named) return named.failure();
   const BodyData& body = builder.body(id);
   const auto per = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
   const std::vector<Index> boundary = boundary_faces(body);

@@ -143,7 +143,7 @@ class DirichletEffect final : public EffectSource {
     std::vector<Index> list;
     if (def_.points.empty() || !selects_nothing()) {
       auto nodes = builder.select(def_.where, def_.name);
-      if (!nodes) return Error{nodes.error()};
+      if (!nodes) return nodes.failure();
       list = std::move(nodes).value();
     }
     auto amount = std::make_shared<Amount>(def_.amount);
@@ -155,13 +155,12 @@ class DirichletEffect final : public EffectSource {
     if (directions.empty()) directions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     auto instance = std::make_unique<DirichletInstance>(has_bone() ? nullptr : amount, pose);
     if (def_.treatment != SupportTreatment::eliminated) {
-      if (auto r = add_rows(builder, list, directions, motion, *instance); !r) return Error{r.error()};
+      if (auto r = add_rows(builder, list, directions, motion, *instance); !r) return r.failure();
       return std::unique_ptr<EffectInstance>(std::move(instance));
     }
     for (const Index node : list) {
       for (const Vec3& d : directions) {
-        if (auto r = builder.prescribe(node, (1 / norm(d)) * d, motion, def_.name); !r)
-          return Error{r.error()};
+        if (auto r = builder.prescribe(node, (1 / norm(d)) * d, motion, def_.name); !r) return r.failure();
       }
     }
     return std::unique_ptr<EffectInstance>(std::move(instance));
@@ -228,7 +227,7 @@ class DirichletEffect final : public EffectSource {
     }
     for (const Vec3& X : def_.points) {
       auto point = embed(body, builder.rest(), X, "dirichlet \"" + def_.name + "\"");
-      if (!point) return Error{point.error()};
+      if (!point) return point.failure();
       points.push_back(std::move(point).value());
     }
     int count = 0;

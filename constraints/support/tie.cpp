@@ -54,7 +54,7 @@ class TieEffect final : public EffectSource {
 
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     auto nodes = builder.select(def_.where, def_.name);
-    if (!nodes) return Error{nodes.error()};
+    if (!nodes) return nodes.failure();
     if (!builder.has_body(def_.to)) {
       return Error{who() + ": " + builder.no_body(def_.to)};
     }
@@ -74,7 +74,7 @@ class TieEffect final : public EffectSource {
             "the two, or give the tie a stiffness"};
       }
       auto point = embed(to, builder.rest(), builder.rest()[at(node)], who());
-      if (!point) return Error{point.error()};
+      if (!point) return point.failure();
       const PointInBody gap = difference(point.value(), {{node}, {1.0}});
       if (gap.nodes.empty()) {
         return Error{who() + ": node " + std::to_string(node - builder.body(def_.where.body).first_node) +

@@ -112,15 +112,15 @@ Result<PaintedCells> painted_cells(const Mesh& mesh, std::span<const std::string
     return Error{"threshold = " + number(threshold) + "; it must be at least 0 and below 1"};
   }
   auto feet = surface_feet(mesh, surfaces);
-  if (!feet) return Error{feet.error()};
+  if (!feet) return feet.failure();
   const std::size_t cells = at(mesh.cell_count());
   PaintedCells out;
   out.lost = feet.value().lost;
   for (const std::string& name : fields) {
     auto found = find_field(mesh, name);
-    if (!found) return Error{found.error()};
+    if (!found) return found.failure();
     const MeshField& field = *found.value();
-    if (auto r = check_weights(mesh, field, feet.value()); !r) return Error{r.error()};
+    if (auto r = check_weights(mesh, field, feet.value()); !r) return r.failure();
     std::vector<double> weight(cells, 0);
     for (std::size_t c = 0; c < cells; ++c) {
       const SurfaceFoot& foot = feet.value().cell[c];

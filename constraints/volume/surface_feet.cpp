@@ -311,7 +311,7 @@ Result<std::set<std::vector<Index>>> named_faces(const Mesh& mesh, std::span<con
 
 Result<SurfaceFeet> surface_feet(const Mesh& mesh, std::span<const std::string> surfaces) {
   auto named = named_faces(mesh, surfaces);
-  if (!named) return Error{named.error()};
+  if (!named) return named.failure();
   const Tets tets(mesh);
   if (tets.size() < at(mesh.cell_count())) {
     return Error{"the mesh has cells without volume; repair it ('isochor check' names them)"};

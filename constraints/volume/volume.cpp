@@ -84,7 +84,7 @@ class VolumeEffect final : public EffectSource {
 
   Result<void> declare(Builder& builder) const override {
     auto regions = builder.regions(def_.body, def_.regions, def_.name);
-    if (!regions) return Error{regions.error()};
+    if (!regions) return regions.failure();
     for (const std::size_t r : regions.value()) {
       const MaterialModel& material = *builder.body(def_.body).regions[r].material;
       if (std::isinf(material.inverse_bulk()) && !def_.hard) {
@@ -105,7 +105,7 @@ class VolumeEffect final : public EffectSource {
 
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     auto regions = builder.regions(def_.body, def_.regions, def_.name);
-    if (!regions) return Error{regions.error()};
+    if (!regions) return regions.failure();
     const BodyData& body = builder.body(def_.body);
     std::vector<VolumeRegion> list;
     if (def_.across_regions) {

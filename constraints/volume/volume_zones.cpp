@@ -23,7 +23,7 @@ Result<CellWeights> named_cells(const Builder& builder, const VolumeDef& def, co
   CellWeights cells;
   if (!zone.regions.empty()) {
     auto regions = builder.regions(def.body, zone.regions, def.name);
-    if (!regions) return Error{regions.error()};
+    if (!regions) return regions.failure();
     for (const std::size_t r : regions.value()) {
       for (const Index c : body.regions[r].cells) cells[c] = 1;
     }
@@ -72,7 +72,7 @@ Result<std::vector<CellWeights>> zone_cells(Builder& builder, const VolumeDef& d
   std::vector<std::size_t> zone_of_field;
   for (const VolumeZone& z : def.zones) {
     auto named = named_cells(builder, def, z);
-    if (!named) return Error{named.error()};
+    if (!named) return named.failure();
     cells.push_back(std::move(named).value());
     if (z.field.empty()) continue;
     fields.push_back(z.field);
@@ -80,7 +80,7 @@ Result<std::vector<CellWeights>> zone_cells(Builder& builder, const VolumeDef& d
   }
   if (!fields.empty()) {
     auto painted = painted_cells(builder.body(def.body).mesh, fields, def.painted_surfaces, def.unpainted);
-    if (!painted) return Error{painted.error()};
+    if (!painted) return painted.failure();
     report_paint(builder, def, painted.value());
     for (std::size_t f = 0; f < fields.size(); ++f) {
       const std::vector<double>& weight = painted.value().weight[f];
@@ -215,7 +215,7 @@ Result<VolumeRegion> region_across(Builder& builder, const VolumeDef& def,
   const VolumeFunctions kind = body.reference->points > 1 && !is_of_mean(strain) ? VolumeFunctions::corners
                                                                                  : VolumeFunctions::constant;
   auto data = solid_data(*body.reference, builder.rest(), body.global_cells, cells, kind);
-  if (!data) return Error{data.error()};
+  if (!data) return data.failure();
   const auto pool = std::make_shared<SolidPool>(body.name + "/" + def.name,
                                                 std::make_shared<const SolidData>(std::move(data).value()),
                                                 nullptr, strain);
@@ -242,9 +242,9 @@ Result<std::vector<std::shared_ptr<RowPool>>> zone_rows(Builder& builder, const 
                                                         const std::vector<VolumeRegion>& regions) {
   const BodyData& body = builder.body(def.body);
   auto cells = zone_cells(builder, def);
-  if (!cells) return Error{cells.error()};
+  if (!cells) return cells.failure();
   if (auto r = check_cells(def, regions, region_of_cells(body, regions), cells.value()); !r)
-    return Error{r.error()};
+    return r.failure();
   std::vector<std::shared_ptr<RowPool>> out;
   for (const VolumeRegion& region : regions) {
     const std::vector<Index>& cell = region.pool->data().cell;
@@ -270,7 +270,7 @@ Result<std::vector<std::shared_ptr<RowPool>>> zone_rows(Builder& builder, const 
       zones.compliance.push_back(is_hard ? 0 : one.compliance[0]);
       if (is_hard) names.push_back(def.zones[z].name);
     }
-    if (auto r = check_independent(region, hard, names); !r) return Error{r.error()};
+    if (auto r = check_independent(region, hard, names); !r) return r.failure();
     for (const VolumeZones* zones : {&hard, &compliant}) {
       const auto rows = zone_volume_rows(region, *zones);
       if (rows->rows() > 0) out.push_back(rows);

@@ -4,6 +4,8 @@
 #include <new>
 #include <string>
 
+#include "isochor/types.h"
+
 namespace isochor {
 
 inline std::string out_of_memory(const char* call) {
@@ -13,6 +15,10 @@ inline std::string out_of_memory(const char* call) {
   } catch (const std::bad_alloc&) {
     return "out of memory";
   }
+}
+
+inline Error no_memory(const char* call) {
+  return {out_of_memory(call), ErrorKind::no_memory};
 }
 
 }  // namespace isochor

@@ -163,7 +163,7 @@ Result<SolidData> solid_data(const ReferenceElement& e, std::span<const Vec3> re
 Result<SolidData> edge_patch_data(std::span<const Vec3> rest, std::span<const Index> cell_nodes,
                                   std::span<const Index> cells) {
   auto tets = solid_data(tet4_element(), rest, cell_nodes, cells, VolumeFunctions::none);
-  if (!tets) return Error{tets.error()};
+  if (!tets) return tets.failure();
   const SolidData& t = tets.value();
   // Tets around each edge, edges in the order of their node pairs.
   struct Member {

@@ -292,7 +292,7 @@ Result<std::vector<Index>> Selector::faces() {
   std::vector<Face> candidates = boundary();
   if (!wanted_.of.empty()) {
     auto keys = named();
-    if (!keys) return Error{keys.error()};
+    if (!keys) return keys.failure();
     std::erase_if(candidates, [&](const Face& f) { return keys.value().count(f.key) == 0; });
   }
   std::erase_if(candidates, [&](const Face& f) { return !fits(f); });
@@ -324,13 +324,13 @@ Result<std::vector<Index>> Selector::nodes() {
 
 Result<std::vector<Index>> select_faces(const Mesh& mesh, const MeshSelection& selection) {
   Selector selector(mesh, selection);
-  if (auto r = selector.check(); !r) return Error{r.error()};
+  if (auto r = selector.check(); !r) return r.failure();
   return selector.faces();
 }
 
 Result<std::vector<Index>> select_nodes(const Mesh& mesh, const MeshSelection& selection) {
   Selector selector(mesh, selection);
-  if (auto r = selector.check(); !r) return Error{r.error()};
+  if (auto r = selector.check(); !r) return r.failure();
   return selector.nodes();
 }
 
@@ -340,7 +340,7 @@ Result<void> add_surface(Mesh& mesh, const MeshSelection& selection) {
       return Error{"selection \"" + s.name + "\": the mesh has a surface of this name; take another"};
   }
   auto faces = select_faces(mesh, selection);
-  if (!faces) return Error{faces.error()};
+  if (!faces) return faces.failure();
   mesh.surfaces.push_back({selection.name, std::move(faces).value()});
   return {};
 }
@@ -351,7 +351,7 @@ Result<void> add_node_set(Mesh& mesh, const MeshSelection& selection) {
       return Error{"selection \"" + s.name + "\": the mesh has a node set of this name; take another"};
   }
   auto nodes = select_nodes(mesh, selection);
-  if (!nodes) return Error{nodes.error()};
+  if (!nodes) return nodes.failure();
   mesh.node_sets.push_back({selection.name, std::move(nodes).value()});
   return {};
 }

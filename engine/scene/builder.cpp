@@ -183,7 +183,7 @@ Result<Index> Builder::add_body(const BodyDef& def) {
       body.warnings.push_back(text);
     }
   }
-  if (auto r = check_element(def); !r) return Error{r.error()};
+  if (auto r = check_element(def); !r) return r.failure();
   body.name = def.name;
   body.element = def.element;
   body.guard_stiffness = def.guard_stiffness;
@@ -198,7 +198,7 @@ Result<Index> Builder::add_body(const BodyDef& def) {
   } else {
     body.reference = def.element == Element::hex8 ? &hex8_element() : &tet4_element();
   }
-  if (auto r = add_regions(def, body); !r) return Error{r.error()};
+  if (auto r = add_regions(def, body); !r) return r.failure();
   return take_body(std::move(body), doubtful_units);
 }
 
@@ -290,7 +290,7 @@ Result<std::vector<RegionData*>> Builder::regions_for(BodyId id, const std::stri
   std::vector<std::string> names;
   if (!region.empty()) names.push_back(region);
   auto found = regions(id, names, who);
-  if (!found) return Error{found.error()};
+  if (!found) return found.failure();
   std::vector<RegionData*> all;
   for (const std::size_t r : found.value()) all.push_back(&bodies_[static_cast<std::size_t>(id)].regions[r]);
   return all;
@@ -299,7 +299,7 @@ Result<std::vector<RegionData*>> Builder::regions_for(BodyId id, const std::stri
 Result<void> Builder::set_material(BodyId id, const std::string& region, const MaterialPtr& material) {
   if (!material) return Error{"set_material: the material is empty; make one with neo_hookean() or another"};
   auto all = regions_for(id, region, "set_material");
-  if (!all) return Error{all.error()};
+  if (!all) return all.failure();
   for (RegionData* r : all.value()) r->material = material;
   return {};
 }
@@ -308,7 +308,7 @@ Result<void> Builder::set_density(BodyId id, const std::string& region, double d
   if (!std::isfinite(density) || density <= 0)
     return Error{"set_density: density = " + number(density) + " kg/m^3; it must be a positive number"};
   auto all = regions_for(id, region, "set_density");
-  if (!all) return Error{all.error()};
+  if (!all) return all.failure();
   for (RegionData* r : all.value()) r->density = density;
   return {};
 }
@@ -390,7 +390,7 @@ Result<std::shared_ptr<const SolidData>> Builder::patches_of(const BodyData& bod
   auto& kept = stencils_at(body, region).patches;
   if (kept && region.material->field_cells() == 0) return kept;
   auto made = edge_patch_data(parts_.rest, body.global_cells, region.cells);
-  if (!made) return Error{made.error()};
+  if (!made) return made.failure();
   // Where nothing varies from cell to cell, nobody asks for the cells of a patch.
   const bool fields = region.material->field_cells() > 0;
   if (!fields) {
@@ -407,7 +407,7 @@ Result<std::shared_ptr<const SolidData>> Builder::cells_of(const BodyData& body,
   auto& kept = stencils_at(body, region).cells[static_cast<std::size_t>(kind)];
   if (kept) return kept;
   auto made = solid_data(*body.reference, parts_.rest, body.global_cells, region.cells, kind);
-  if (!made) return Error{made.error()};
+  if (!made) return made.failure();
   kept = std::make_shared<const SolidData>(std::move(made).value());
   return kept;
 }
@@ -424,7 +424,7 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
     energy = region.material->distortional();
   } else {
     auto complete = region.material->complete();
-    if (!complete) return Error{complete.error()};
+    if (!complete) return complete.failure();
     energy = complete.value();
   }
   for (const std::string& warning : region.material->warnings()) {
@@ -449,7 +449,7 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
   }
   if (smoothed) {
     auto patches = patches_of(body, region);
-    if (!patches) return Error{patches.error()};
+    if (!patches) return patches.failure();
     region.energy = energy = for_stencils(energy, *region.material, *patches.value());
     region.elastic_pool = add_stencils(std::make_shared<SolidPool>(
         body.name + "/" + region.name + "/patches", patches.value(), energy, VolumeStrain::linear));
@@ -464,7 +464,7 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
     const bool mean = is_of_mean(static_cast<VolumeStrain>(strain));
     auto data =
         cells_of(body, region, !wanted ? VolumeFunctions::none : (mean ? VolumeFunctions::constant : kind));
-    if (!data) return Error{data.error()};
+    if (!data) return data.failure();
     if (energy && !smoothed) region.energy = energy = for_stencils(energy, *region.material, *data.value());
     const Index pool = add_stencils(std::make_shared<SolidPool>(body.name + "/" + region.name, data.value(),
                                                                 energy, static_cast<VolumeStrain>(strain)));
@@ -533,12 +533,12 @@ Result<std::vector<Index>> Builder::select(const Selection& s, const std::string
   std::vector<Index> found;
   if (!s.surfaces.empty()) {
     auto f = faces(s.body, s.surfaces, who);
-    if (!f) return Error{f.error()};
+    if (!f) return f.failure();
     found = f.value();
   }
   if (!s.regions.empty()) {
     auto r = regions(s.body, s.regions, who);
-    if (!r) return Error{r.error()};
+    if (!r) return r.failure();
     for (const std::size_t region : r.value()) {
       const auto per = static_cast<std::size_t>(nodes_per_cell(b.mesh.cell_type));
       for (const Index c : b.regions[region].cells) {
@@ -678,9 +678,9 @@ Result<SystemParts> Builder::finish(bool needs_anchors) {
     }
   }
   if (needs_anchors) {
-    if (auto r = check_anchored(facts); !r) return Error{r.error()};
+    if (auto r = check_anchored(facts); !r) return r.failure();
   }
-  if (auto r = check_hard_rows(facts); !r) return Error{r.error()};
+  if (auto r = check_hard_rows(facts); !r) return r.failure();
   if (!supports->nodes.empty()) parts_.prescribers.push_back(supports);
   return std::move(parts_);
 }

@@ -53,7 +53,7 @@ Result<Methods::Renewed> Methods::renew(SystemParts parts) {
   if (std::string why = incompatible(parts, options_); !why.empty()) return Error{std::move(why)};
   const bool prefer_iterative = large(parts), same_solver = prefer_iterative == large(system_->parts());
   auto compiled = compile_system(std::move(parts), system_.get());
-  if (!compiled) return Error{compiled.error()};
+  if (!compiled) return compiled.failure();
   std::shared_ptr<System> system = std::move(compiled).value();
   const bool same = system->shares_tables(*system_);
   // Methods that sort rows by their numbers are made anew.
@@ -71,7 +71,7 @@ Result<Methods::Renewed> Methods::renew(SystemParts parts) {
     return Renewed::numbers;
   }
   const StageSeconds spent = chosen_->seconds();
-  if (auto r = make_for(std::move(system), prefer_iterative, same_solver); !r) return Error{r.error()};
+  if (auto r = make_for(std::move(system), prefer_iterative, same_solver); !r) return r.failure();
   chosen_->add_seconds(spent);
   return same ? Renewed::numbers : Renewed::structure;
 }
@@ -85,7 +85,7 @@ Result<std::shared_ptr<System>> Methods::compile_system(SystemParts parts, const
     parts.treatment = RowTreatment::saddle;
   parts.border_wide_rows = !ascent;
   auto compiled = System::compile(std::move(parts), like);
-  if (!compiled) return Error{compiled.error()};
+  if (!compiled) return compiled.failure();
   const System& system = *compiled.value();
   if (ascent && static_cast<Index>(system.dual_rows().size()) != system.rows()) {
     return Error{
@@ -129,7 +129,7 @@ void Methods::list_stand_ins() {
 Result<void> Methods::make(SystemParts parts, bool keep_solvers, const System* like) {
   const bool prefer_iterative = large(parts);
   auto compiled = compile_system(std::move(parts), like);
-  if (!compiled) return Error{compiled.error()};
+  if (!compiled) return compiled.failure();
   return make_for(std::move(compiled).value(), prefer_iterative, keep_solvers);
 }
 

@@ -54,7 +54,7 @@ Result<void> Surroundings::restore(std::span<const double> memory) {
       pools[p] = context_.first_stencils[p];
     } else {
       auto restored = stencils->restored(kept);
-      if (!restored) return Error{restored.error()};
+      if (!restored) return restored.failure();
       pools[p] = std::move(restored).value();
     }
     changed = true;

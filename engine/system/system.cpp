@@ -103,7 +103,7 @@ class SystemCompiler {
     measure();
     place_pools();
     number_rows();
-    if (auto r = number_unknowns(); !r) return Error{r.error()};
+    if (auto r = number_unknowns(); !r) return r.failure();
     gather_rows();
     gather_residual();
     gather_blocks();
@@ -111,7 +111,7 @@ class SystemCompiler {
     gather_jacobian();
     collect_compliance();
     collect_bounds();
-    if (auto r = RowTreatments(*s_, t_->treated).sort(); !r) return Error{r.error()};
+    if (auto r = RowTreatments(*s_, t_->treated).sort(); !r) return r.failure();
     build_kkt();
     locate_entries();
     group_unknowns();

@@ -68,7 +68,7 @@ Result<WorldBatch> WorldBatch::create(const World& world, Index count, int threa
   }
   return WorldBatch(std::move(impl));
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("batch")};
+  return no_memory("batch");
 }
 
 Index WorldBatch::size() const {
@@ -106,7 +106,7 @@ Result<void> WorldBatch::reset(std::span<const std::uint8_t> marked) try {
   }
   return {};
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("reset")};
+  return no_memory("reset");
 }
 
 Result<void> WorldBatch::set_amounts(EffectId effect, std::span<const double> amounts) try {
@@ -124,7 +124,7 @@ Result<void> WorldBatch::set_amounts(EffectId effect, std::span<const double> am
   }
   return {};
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("set_amounts")};
+  return no_memory("set_amounts");
 }
 
 Result<void> WorldBatch::positions(BodyId body, std::span<Vec3> out) const {

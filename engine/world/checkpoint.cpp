@@ -217,7 +217,7 @@ Result<void> World::load(std::span<const std::byte> bytes) try {
   Impl& w = *impl_;
   if (auto r = w.compile(); !r) return r;
   auto content = read(bytes);
-  if (!content) return Error{content.error()};
+  if (!content) return content.failure();
   Content& c = content.value();
   if (const std::string what = difference(c.scene, w.scene_parts()); !what.empty()) {
     return Error{"load: the state was saved from another scene: of this world differ " + what +
@@ -245,7 +245,7 @@ Result<void> World::load(std::span<const std::byte> bytes) try {
   w.settled = std::move(settled);
   return {};
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("load")};
+  return no_memory("load");
 }
 
 std::uint64_t World::state_hash() const {

@@ -215,12 +215,12 @@ Result<Response> World::Impl::derivative(Derivatives& d, Amount* amount, PointIn
 
 Result<std::vector<Response>> World::derivatives(std::span<const ResponseInput> inputs) try {
   Impl& w = *impl_;
-  if (auto r = w.compile(); !r) return Error{r.error()};
+  if (auto r = w.compile(); !r) return r.failure();
   if (w.settled) {
     return Error{"derivatives: the state is unfinished, no equilibrium; take a step without a budget first"};
   }
   Impl::Derivatives d(w);
-  if (auto r = d.linearize(); !r) return Error{r.error()};
+  if (auto r = d.linearize(); !r) return r.failure();
   const Index wanted = w.system().rows(), found = d.report.negative_pivots;
   std::vector<Response> all;
   for (const ResponseInput& one : inputs) {
@@ -230,7 +230,7 @@ Result<std::vector<Response>> World::derivatives(std::span<const ResponseInput> 
     if (pushes) {
       if (auto r = check(one.body); !r) return Error{"derivatives: " + r.error()};
       auto embedded = embed(w.said.builder.body(one.body), w.system().parts().rest, one.point, "derivatives");
-      if (!embedded) return Error{embedded.error()};
+      if (!embedded) return embedded.failure();
       point = std::move(embedded).value();
     } else {
       if (auto r = check(one.effect); !r) return Error{"derivatives: " + r.error()};
@@ -240,7 +240,7 @@ Result<std::vector<Response>> World::derivatives(std::span<const ResponseInput> 
         return Error{"derivatives: effect \"" + w.said.sources[e]->name() + "\" has no amount to change"};
     }
     auto response = w.derivative(d, amount, std::move(point), one.force);
-    if (!response) return Error{response.error()};
+    if (!response) return response.failure();
     all.push_back(std::move(response).value());
   }
   // Last, as it evaluates the state.
@@ -253,7 +253,7 @@ Result<std::vector<Response>> World::derivatives(std::span<const ResponseInput> 
   return all;
 } catch (const std::bad_alloc&) {
   impl_->methods.drop();
-  return Error{out_of_memory("derivatives")};
+  return no_memory("derivatives");
 }
 
 }  // namespace isochor

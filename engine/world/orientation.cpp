@@ -156,9 +156,9 @@ Error without_rotation(std::size_t nodes, const char* when) {
 
 Result<Orientation> World::orientation(const Selection& where) const try {
   Impl& w = *impl_;
-  if (auto r = w.compile(); !r) return Error{r.error()};
+  if (auto r = w.compile(); !r) return r.failure();
   const auto selected = w.said.builder.select(where, "orientation");
-  if (!selected) return Error{selected.error()};
+  if (!selected) return selected.failure();
   const BodyData& body = w.said.builder.body(where.body);
   const auto rest = std::span<const Vec3>(body.mesh.nodes);
   const auto x = positions(where.body);
@@ -188,7 +188,7 @@ Result<Orientation> World::orientation(const Selection& where) const try {
   out.misfit = std::sqrt(out.misfit);
   return out;
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("orientation")};
+  return no_memory("orientation");
 }
 
 }  // namespace isochor

@@ -29,7 +29,7 @@ Result<void> restore_stencils(const SystemFacets& facets, std::span<const double
       // Zeros: no step has been accepted with them.
       if (std::all_of(kept.begin(), kept.end(), [](double v) { return v == 0; })) continue;
       auto restored = stencils->restored(kept);
-      if (!restored) return Error{restored.error()};
+      if (!restored) return restored.failure();
       parts.stencil_pools[at(p)] = std::move(restored).value();
     }
   }
@@ -67,7 +67,7 @@ Result<void> World::Impl::renew() {
   {
     const Stopwatch watch(report.seconds);
     auto built = build_parts(next, options);
-    if (!built) return Error{built.error()};
+    if (!built) return built.failure();
     SystemParts& parts = built.value().parts;
     const SystemFacets facets(parts.stencil_pools, parts.row_pools);
     const Moving moving(take_inventory(said, system().parts(), system().facets()),
@@ -93,7 +93,7 @@ Result<void> World::Impl::renew() {
         said.builder.body_slots() != next.builder.body_slots() || state.x.size() != moved.x.size();
     auto new_views = std::make_shared<LeftViews>();
     const auto renewed = methods.renew(std::move(parts));
-    if (!renewed) return Error{renewed.error()};
+    if (!renewed) return renewed.failure();
 
     if (other_nodes) leave_views(std::move(new_views));
     instances = std::move(built.value().instances);
@@ -118,7 +118,7 @@ Result<void> World::Impl::renew() {
 Result<void> World::Impl::compile_like(Impl& other) {
   const Stopwatch watch(compile_report.seconds);
   auto built = build_parts(said, options);
-  if (!built) return Error{built.error()};
+  if (!built) return built.failure();
   SystemParts& parts = built.value().parts;
   const SystemFacets facets(parts.stencil_pools, parts.row_pools);
   if (!facets.renewed.empty()) first_stencils = parts.stencil_pools;

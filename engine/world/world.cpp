@@ -82,7 +82,7 @@ Result<World> World::create(WorldOptions options, Host host, std::uint64_t abi) 
     parallel = std::make_unique<TbbParallel>(options.threads);
   return World(std::make_unique<Impl>(std::move(options), std::move(parallel)));
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("create")};
+  return no_memory("create");
 }
 
 Description& World::Impl::open_draft() {
@@ -94,16 +94,16 @@ Description& World::Impl::open_draft() {
 Result<BodyId> World::add_body(BodyDef body) try {
   Builder& builder = impl_->open_draft().builder;
   auto place = builder.add_body(body);
-  if (!place) return Error{place.error()};
+  if (!place) return place.failure();
   return WorldNumbers::make<BodyTag>(place.value(), builder.world(),
                                      builder.body_slots().generation(place.value()));
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("add_body")};
+  return no_memory("add_body");
 }
 
 Result<EffectId> World::add(EffectPtr effect) try {
   if (!effect) return Error{"world: an empty effect was added"};
-  if (auto r = effect->check(); !r) return Error{r.error()};
+  if (auto r = effect->check(); !r) return r.failure();
   Description& d = impl_->open_draft();
   d.sources.reserve(at(d.places.size()) + 1);
   d.order.reserve(d.order.size() + 1);
@@ -113,7 +113,7 @@ Result<EffectId> World::add(EffectPtr effect) try {
   d.order.push_back(place);
   return WorldNumbers::make<EffectTag>(place, d.builder.world(), d.places.generation(place));
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("add")};
+  return no_memory("add");
 }
 
 namespace {
@@ -170,7 +170,7 @@ Result<void> World::Impl::compile() {
     return compile_now();
   } catch (const std::bad_alloc&) {
     if (!scene_made()) used_up = true;
-    return Error{out_of_memory("compile")};
+    return no_memory("compile");
   }
 }
 
@@ -229,21 +229,21 @@ Result<BuiltParts> build_parts(Description& said, const WorldOptions& options) {
   BuiltParts built;
   builder.set_quasi_static(!options.scheme->has_inertia());
   for (const Index e : said.order) {
-    if (auto r = said.sources[at(e)]->declare(builder); !r) return Error{r.error()};
+    if (auto r = said.sources[at(e)]->declare(builder); !r) return r.failure();
   }
   if (options.consistent_mass && options.scheme->has_inertia()) builder.use_consistent_mass();
-  if (auto r = builder.build_solids(); !r) return Error{r.error()};
+  if (auto r = builder.build_solids(); !r) return r.failure();
   built.instances.resize(said.sources.size());
   for (const Index e : said.order) {
     builder.set_owner(e);
     auto instance = said.sources[at(e)]->build(builder);
-    if (!instance) return Error{instance.error()};
+    if (!instance) return instance.failure();
     built.instances[at(e)] = std::move(instance).value();
   }
   builder.set_owner(-1);
   built.held_by = builder.held_directions(said.sources.size());
   auto parts = builder.finish(!options.scheme->has_inertia());
-  if (!parts) return Error{parts.error()};
+  if (!parts) return parts.failure();
   built.parts = std::move(parts).value();
   return built;
 }
@@ -251,7 +251,7 @@ Result<BuiltParts> build_parts(Description& said, const WorldOptions& options) {
 Result<void> World::Impl::compile_first() {
   const Stopwatch watch(compile_report.seconds);
   auto built = build_parts(said, options);
-  if (!built) return Error{built.error()};
+  if (!built) return built.failure();
   instances = std::move(built.value().instances);
   held_by = std::move(built.value().held_by);
   if (auto r = methods.choose(std::move(built.value().parts)); !r) return r;
@@ -363,7 +363,7 @@ Result<void> World::set_amount(EffectId effect, double amount) try {
   a->set(amount);
   return {};
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("set_amount")};
+  return no_memory("set_amount");
 }
 
 template <class Step>

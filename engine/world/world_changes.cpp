@@ -37,7 +37,7 @@ Result<void> World::replace(EffectId effect, EffectPtr with) try {
   impl_->open_draft().sources[static_cast<std::size_t>(effect)] = std::move(with);
   return {};
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("replace")};
+  return no_memory("replace");
 }
 
 Result<void> World::remove(EffectId effect) try {
@@ -49,7 +49,7 @@ Result<void> World::remove(EffectId effect) try {
   d.order.erase(std::find(d.order.begin(), d.order.end(), place));
   return {};
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("remove")};
+  return no_memory("remove");
 }
 
 Result<void> World::remove(BodyId body) try {
@@ -64,21 +64,21 @@ Result<void> World::remove(BodyId body) try {
   impl_->open_draft().builder.remove_body(place);
   return {};
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("remove")};
+  return no_memory("remove");
 }
 
 Result<void> World::set_material(BodyId body, const std::string& region, MaterialPtr material) try {
   if (auto r = check(body); !r) return Error{"set_material: " + r.error()};
   return impl_->open_draft().builder.set_material(body, region, material);
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("set_material")};
+  return no_memory("set_material");
 }
 
 Result<void> World::set_density(BodyId body, const std::string& region, double density) try {
   if (auto r = check(body); !r) return Error{"set_density: " + r.error()};
   return impl_->open_draft().builder.set_density(body, region, density);
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("set_density")};
+  return no_memory("set_density");
 }
 
 Result<void> World::set_gravity(const Vec3& gravity) {
@@ -103,7 +103,7 @@ Result<void> World::set_pose(EffectId effect, const Pose& pose) try {
   p->set(pose);
   return {};
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("set_pose")};
+  return no_memory("set_pose");
 }
 
 Result<void> World::set_forces(BodyId body, std::span<const Vec3> forces) try {
@@ -124,7 +124,7 @@ Result<void> World::set_forces(BodyId body, std::span<const Vec3> forces) try {
   std::copy(forces.begin(), forces.end(), w.state.forces.begin() + b.first_node);
   return {};
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("set_forces")};
+  return no_memory("set_forces");
 }
 
 Result<void> World::add_force(BodyId body, Index node, const Vec3& force) try {
@@ -141,7 +141,7 @@ Result<void> World::add_force(BodyId body, Index node, const Vec3& force) try {
   w.state.forces[at(b.first_node + node)] += force;
   return {};
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("add_force")};
+  return no_memory("add_force");
 }
 
 Result<void> World::add_force_at(BodyId body, const Vec3& point, const Vec3& force) try {
@@ -153,13 +153,13 @@ Result<void> World::add_force_at(BodyId body, const Vec3& point, const Vec3& for
     return Error{"add_force_at: force " + text_of(force) + " N at " + text_of(point) +
                  " m; give finite numbers"};
   const auto found = embed(b, w.system().parts().rest, point, "add_force_at");
-  if (!found) return Error{found.error()};
+  if (!found) return found.failure();
   w.state.forces.resize(w.state.x.size());
   const PointInBody& p = found.value();
   for (std::size_t k = 0; k < p.nodes.size(); ++k) w.state.forces[at(p.nodes[k])] += p.weight[k] * force;
   return {};
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("add_force_at")};
+  return no_memory("add_force_at");
 }
 
 void World::clear_forces() {
@@ -176,7 +176,7 @@ Result<void> World::reset() try {
   // Should memory run out here, the world is reset and its stencils follow with the next call.
   return w.put_stencils_back();
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("reset")};
+  return no_memory("reset");
 }
 
 Result<World> World::clone(int threads) const try {
@@ -185,7 +185,7 @@ Result<World> World::clone(int threads) const try {
     return Error{"clone: threads = " + std::to_string(threads) +
                  "; give 0 (as many as this world has) or a number up to 1024"};
   }
-  if (auto r = w.compile(); !r) return Error{r.error()};
+  if (auto r = w.compile(); !r) return r.failure();
   std::unique_ptr<Parallel> parallel;
   if (threads > 0)
     parallel = std::make_unique<TbbParallel>(threads);
@@ -193,10 +193,10 @@ Result<World> World::clone(int threads) const try {
     parallel = w.parallel->another();
   auto impl = std::make_unique<Impl>(w.options, std::move(parallel));
   impl->said = {w.said.builder.again(), w.said.places, w.said.sources, w.said.order};
-  if (auto r = impl->compile_like(w); !r) return Error{r.error()};
+  if (auto r = impl->compile_like(w); !r) return r.failure();
   return World(std::move(impl));
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("clone")};
+  return no_memory("clone");
 }
 
 const CompileReport& World::compile_report() const {

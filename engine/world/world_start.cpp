@@ -42,7 +42,7 @@ Result<void> World::set_velocities(BodyId body, std::span<const Vec3> velocities
   std::fill(past.begin(), past.end(), 0.0);
   return {};
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("set_velocities")};
+  return no_memory("set_velocities");
 }
 
 Result<void> World::set_positions(BodyId body, std::span<const Vec3> positions) try {
@@ -65,7 +65,7 @@ Result<void> World::set_positions(BodyId body, std::span<const Vec3> positions) 
   std::fill(past.begin(), past.end(), 0.0);
   return {};
 } catch (const std::bad_alloc&) {
-  return Error{out_of_memory("set_positions")};
+  return no_memory("set_positions");
 }
 
 }  // namespace isochor

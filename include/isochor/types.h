@@ -47,9 +47,12 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// Why a call was refused: one sentence that names what, where, the value and the remedy.
+enum class ErrorKind : std::uint8_t { refused, no_memory };
+
+// Why a call failed: one sentence that names what, where, the value and the remedy.
 struct Error {
   std::string message;
+  ErrorKind kind = ErrorKind::refused;
 };
 
 // A value or the reason why there is none. Never throws. Test it before value(): a failed result has none.
@@ -64,7 +67,8 @@ class [[nodiscard]] Result {
   T& value() & { return *std::get_if<0>(&content_); }
   const T& value() const& { return *std::get_if<0>(&content_); }
   T&& value() && { return std::move(*std::get_if<0>(&content_)); }
-  const std::string& error() const { return std::get_if<1>(&content_)->message; }
+  const std::string& error() const { return failure().message; }
+  const Error& failure() const { return *std::get_if<1>(&content_); }  // to be handed on as it is
 
  private:
   std::variant<T, Error> content_;
@@ -74,14 +78,15 @@ template <>
 class [[nodiscard]] Result<void> {
  public:
   Result() = default;
-  Result(Error error) : message_(std::move(error.message)), failed_(true) {}
+  Result(Error error) : failure_(std::move(error)), failed_(true) {}
 
   explicit operator bool() const { return !failed_; }
   bool ok() const { return !failed_; }
-  const std::string& error() const { return message_; }
+  const std::string& error() const { return failure_.message; }
+  const Error& failure() const { return failure_; }
 
  private:
-  std::string message_;
+  Error failure_;
   bool failed_ = false;
 };
 

@@ -91,7 +91,7 @@ Result<void> add(const EffectKind& kind, EffectAdder& adder) {
       if (auto r = adder.add(kind, make(all[i])); !r) return r;
     } else {
       Result<EffectPtr> effect = make(all[i], place(kind.key, i), adder);
-      if (!effect) return Error{effect.error()};
+      if (!effect) return effect.failure();
       if (auto r = adder.add(kind, effect.value()); !r) return r;
     }
   }

@@ -155,8 +155,8 @@ Result<SceneDef> scene_of(const EffectEntry& entry, const Json& json, const Part
     return Error{entry.word + ": " + scene_json::plain(e.what())};
   }
   if (!reading.error.empty()) return Error{reading.error};
-  if (auto r = check_name(place(entry.kind->key, 0), entry.kind->name(scene, 0)); !r) return Error{r.error()};
-  if (auto r = entry.kind->check(*entry.kind, scene); !r) return Error{r.error()};
+  if (auto r = check_name(place(entry.kind->key, 0), entry.kind->name(scene, 0)); !r) return r.failure();
+  if (auto r = entry.kind->check(*entry.kind, scene); !r) return r.failure();
   return scene;
 }
 
@@ -196,11 +196,11 @@ Json part_of() {
 
 Result<EffectPtr> effect_from_keys(std::string_view kind, std::string_view json, const PartContext& context) {
   auto found = find_kind(std::string(kind));
-  if (!found) return Error{found.error()};
+  if (!found) return found.failure();
   const EffectEntry& entry = *found.value();
   const std::string list = entry.kind->key;
   auto parsed = parse_part(json, entry.word);
-  if (!parsed) return Error{parsed.error()};
+  if (!parsed) return parsed.failure();
   if (!parsed.value().contains("name")) parsed.value()["name"] = free_name(entry.name, context.names_taken);
   auto scene = scene_of(entry, parsed.value(), context);
   if (!scene) return Error{placed(scene.error(), list, entry.word)};
@@ -218,19 +218,19 @@ Result<EffectPtr> effect_from_keys(std::string_view kind, std::string_view json,
 
 Result<Selection> selection_from_keys(std::string_view json, const PartContext& context) {
   auto parsed = parse_part(json, "where");
-  if (!parsed) return Error{parsed.error()};
+  if (!parsed) return parsed.failure();
   Selection selection;
   ReadContext reading = reading_of(context);
-  if (auto r = read_part(parsed.value(), "where", reading, selection); !r) return Error{r.error()};
+  if (auto r = read_part(parsed.value(), "where", reading, selection); !r) return r.failure();
   return selection;
 }
 
 Result<RegionMaterial> material_from_keys(std::string_view json, const std::string& folder) {
   auto parsed = parse_part(json, "material");
-  if (!parsed) return Error{parsed.error()};
+  if (!parsed) return parsed.failure();
   MaterialDef def;
   ReadContext context;
-  if (auto r = read_part(parsed.value(), "material", context, def); !r) return Error{r.error()};
+  if (auto r = read_part(parsed.value(), "material", context, def); !r) return r.failure();
   auto made = make_material(def, folder);
   if (!made) return Error{"material: " + made.error()};
   return RegionMaterial{def.region, std::move(made).value(), def.density};
@@ -238,7 +238,7 @@ Result<RegionMaterial> material_from_keys(std::string_view json, const std::stri
 
 Result<BodyDef> body_from_keys(std::string_view json, const std::string& folder, const Mesh* mesh) {
   auto parsed = parse_part(json, "body");
-  if (!parsed) return Error{parsed.error()};
+  if (!parsed) return parsed.failure();
   if (mesh != nullptr) {
     if (parsed.value().contains("mesh"))
       return Error{"body.mesh is given as a key and as arrays; leave one of them out"};
@@ -253,18 +253,18 @@ Result<BodyDef> body_from_keys(std::string_view json, const std::string& folder,
   }
   keys::BodyKeys part;
   ReadContext context;
-  if (auto r = read_part(parsed.value(), "body", context, part); !r) return Error{r.error()};
+  if (auto r = read_part(parsed.value(), "body", context, part); !r) return r.failure();
   const SceneBody& def = part.body;
-  if (auto r = check_name("body", def.name); !r) return Error{r.error()};
-  if (auto r = check_body("body", def); !r) return Error{r.error()};
+  if (auto r = check_name("body", def.name); !r) return r.failure();
+  if (auto r = check_body("body", def); !r) return r.failure();
   auto made = make_body(def, folder, "body", mesh);
-  if (!made) return Error{made.error()};
+  if (!made) return made.failure();
   return std::move(made.value().def);
 }
 
 Result<WorldOptions> options_from_keys(std::string_view json) {
   auto parsed = parse_part(json, "options");
-  if (!parsed) return Error{parsed.error()};
+  if (!parsed) return parsed.failure();
   for (const char* key : {"duration", "steps", "step", "path_step"}) {
     if (parsed.value().contains(key)) {
       return Error{std::string("options.") + key +
@@ -273,11 +273,10 @@ Result<WorldOptions> options_from_keys(std::string_view json) {
   }
   keys::WorldKeys world;
   ReadContext context;
-  if (auto r = read_part(parsed.value(), "options", context, world); !r) return Error{r.error()};
+  if (auto r = read_part(parsed.value(), "options", context, world); !r) return r.failure();
   AnalysisDef& analysis = world.analysis;
-  if (auto r = check_analysis("options", analysis); !r) return Error{r.error()};
-  if (auto r = check_curve("options.gravity_amount", analysis.options.gravity_curve); !r)
-    return Error{r.error()};
+  if (auto r = check_analysis("options", analysis); !r) return r.failure();
+  if (auto r = check_curve("options.gravity_amount", analysis.options.gravity_curve); !r) return r.failure();
   if (world.follow && analysis.type != AnalysisType::statics)
     return Error{"options.follow belongs to statics; remove it or set options.type to \"static\""};
   if (world.follow) analysis.path_step = 1;  // its scheme; lengths are given to World::follow()

@@ -62,7 +62,7 @@ Result<SceneDef> parse_scene(const std::string& text, const std::string& source,
   if (text.find_first_not_of(" \t\r\n") == std::string::npos)
     return Error{source + ": the file is empty; a scene needs at least \"bodies\""};
   auto json = scene_json::parse_object(text, source);
-  if (!json) return Error{json.error()};
+  if (!json) return json.failure();
   if (auto r = apply(json.value(), overrides); !r) return Error{source + ": " + r.error()};
   return from_json(json.value(), described(source, overrides), folder);
 }

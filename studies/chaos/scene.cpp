@@ -143,10 +143,10 @@ Result<SceneDef> write_chaos_scene(const ChaosScene& chaos, const std::string& f
   std::filesystem::create_directories(folder, code);
   if (code) return Error{folder + ": cannot be made: " + code.message()};
   for (const ChaosFile& file : chaos.files) {
-    if (auto r = write_text(folder + "/" + file.name, file.text); !r) return Error{r.error()};
+    if (auto r = write_text(folder + "/" + file.name, file.text); !r) return r.failure();
   }
   const std::string path = folder + "/scene.json";
-  if (auto r = write_text(path, to_json(chaos.scene)); !r) return Error{r.error()};
+  if (auto r = write_text(path, to_json(chaos.scene)); !r) return r.failure();
   return read_scene_file(path);
 }
 

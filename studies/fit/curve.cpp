@@ -184,7 +184,7 @@ Range range_of(const std::vector<Curve>& curves) {
 Result<Curve> read_curve(const std::string& given, const CurveOptions& options) {
   std::string path = given;
   auto mode = split_mode(path);
-  if (!mode) return Error{mode.error()};
+  if (!mode) return mode.failure();
   std::ifstream in(path);
   if (!in) return Error{path + ": cannot be read; give a CSV file with columns of strain and stress"};
   std::optional<Columns> columns;
@@ -207,7 +207,7 @@ Result<Curve> read_curve(const std::string& given, const CurveOptions& options) 
   Curve curve;
   curve.name = std::filesystem::path(path).stem().string();
   curve.mode = mode.value();
-  if (auto r = read_points(in, path, *columns, line_number, curve); !r) return Error{r.error()};
+  if (auto r = read_points(in, path, *columns, line_number, curve); !r) return r.failure();
   if (curve.stress.empty()) return Error{path + ": the header has no points below it"};
   const double largest = std::max(std::abs(*std::max_element(curve.stress.begin(), curve.stress.end())),
                                   std::abs(*std::min_element(curve.stress.begin(), curve.stress.end())));

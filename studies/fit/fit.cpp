@@ -26,7 +26,7 @@ using Values = std::vector<double>;
 
 Result<MaterialPtr> material_from(const std::string& keys) {
   auto made = material_from_keys(keys, "");
-  if (!made) return Error{made.error()};
+  if (!made) return made.failure();
   return made.value().material;
 }
 

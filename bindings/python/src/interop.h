@@ -21,13 +21,22 @@ struct Refused : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// Becomes MemoryError.
+struct NoMemory : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+[[noreturn]] inline void raise(const Error& error) {
+  if (error.kind == ErrorKind::no_memory) throw NoMemory(error.message);
+  throw Refused(error.message);
+}
+
 template <class T>
 T need(Result<T> result) {
-  if (!result) throw Refused(result.error());
+  if (!result) raise(result.failure());
   return std::move(result).value();
 }
 inline void need(const Result<void>& result) {
-  if (!result) throw Refused(result.error());
+  if (!result) raise(result.failure());
 }
 
 // Arrays in: whatever numpy makes an array of, strided or not, is copied. `what` begins the sentence of a

@@ -14,6 +14,8 @@ void translate(std::exception_ptr error) {
   } catch (const Refused& refused) {
     const py::object type = py::module_::import("isochor.errors").attr("Error");
     PyErr_SetString(type.ptr(), refused.what());
+  } catch (const NoMemory& told) {
+    PyErr_SetString(PyExc_MemoryError, told.what());
   }
 }
 

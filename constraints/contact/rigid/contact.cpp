@@ -147,7 +147,7 @@ class ContactEffect final : public EffectSource {
     Obstacle shape = def_.obstacle;
     if (!def_.against.empty()) {
       auto rigid = find_rigid(builder, def_.against, called);
-      if (!rigid) return Error{rigid.error()};
+      if (!rigid) return rigid.failure();
       points = rigid.value().points;
       shape = rigid.value().shape;
     }
@@ -156,7 +156,7 @@ class ContactEffect final : public EffectSource {
     RigidGeometry geometry(shape, points, pose);
     auto touching = def_.rigid.empty() ? add_nodes(builder, geometry, called)
                                        : add_touch_points(builder, geometry, called);
-    if (!touching) return Error{touching.error()};
+    if (!touching) return touching.failure();
     const auto pool = std::make_shared<ContactPool>(def_.name, std::move(geometry),
                                                     FrictionLaw(def_.friction, def_.static_friction),
                                                     def_.coupling == FrictionCoupling::coupled);
@@ -166,7 +166,7 @@ class ContactEffect final : public EffectSource {
                     : std::make_shared<ContactRows>(def_.name, def_.resolve_time);
     for (const double area : touching.value().area)
       rows->add(touching.value().modulus, area, builder.length(), def_.compliance);
-    if (auto r = find_overlap(builder, *pool, *rows); !r) return Error{r.error()};
+    if (auto r = find_overlap(builder, *pool, *rows); !r) return r.failure();
     rows->stencil_pool = builder.add_stencils(pool);
     const Index row_pool = builder.add_rows(rows);
     return std::unique_ptr<EffectInstance>(
@@ -190,7 +190,7 @@ class ContactEffect final : public EffectSource {
   Result<Touching> add_nodes(const Builder& builder, RigidGeometry& geometry,
                              const std::string& called) const {
     auto faces = surface_faces(builder, def_.body, def_.surfaces, called);
-    if (!faces) return Error{faces.error()};
+    if (!faces) return faces.failure();
     const BodyData& body = builder.body(def_.body);
     const double mu = stiffest(body);
     const auto per = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
@@ -215,7 +215,7 @@ class ContactEffect final : public EffectSource {
                                     const std::string& called) const {
     if (def_.rigid == def_.against) return Error{who() + "a rigid body does not touch itself"};
     auto rigid = find_rigid(builder, def_.rigid, called);
-    if (!rigid) return Error{rigid.error()};
+    if (!rigid) return rigid.failure();
     double mu = 0;
     for (Index b = 0; b < builder.body_count(); ++b)
       mu = std::max(mu, stiffest(builder.body(static_cast<BodyId>(b))));

@@ -59,7 +59,7 @@ TriangleSurface merged(const TriangleSurface& s) {
 }  // namespace
 
 Result<TriangleSurface> closed_surface(const TriangleSurface& surface) {
-  if (auto r = check_numbers(surface); !r) return Error{r.error()};
+  if (auto r = check_numbers(surface); !r) return r.failure();
   TriangleSurface s = merged(surface);
   struct Sides {
     int forward = 0, backward = 0;

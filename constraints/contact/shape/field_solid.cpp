@@ -83,7 +83,7 @@ Vec3 FieldSolid::last() const {
 }
 
 Result<std::shared_ptr<const FieldSolid>> FieldSolid::make(const DistanceGrid& grid) {
-  if (auto r = check(grid); !r) return Error{r.error()};
+  if (auto r = check(grid); !r) return r.failure();
   auto solid = std::make_shared<FieldSolid>();
   solid->grid_ = grid;
   solid->low_ = solid->last();
@@ -333,13 +333,13 @@ TriangleSurface FieldSolid::outline() const {
 
 Result<SolidPtr> field_solid(const DistanceGrid& grid) {
   auto solid = FieldSolid::make(grid);
-  if (!solid) return Error{solid.error()};
+  if (!solid) return solid.failure();
   return SolidPtr(std::move(solid).value());
 }
 
 Result<DistanceGrid> sampled_distances(const TriangleSurface& surface, double spacing) {
   auto solid = MeshSolid::make(surface);
-  if (!solid) return Error{solid.error()};
+  if (!solid) return solid.failure();
   const auto [low, high] = solid.value()->box();
   constexpr double margin = 2, most = 1e8;
   DistanceGrid g;

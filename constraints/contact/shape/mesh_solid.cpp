@@ -40,7 +40,7 @@ bool same_way(const Vec3& a, const Vec3& b) {
 
 Result<std::shared_ptr<const MeshSolid>> MeshSolid::make(const TriangleSurface& surface) {
   auto clean = closed_surface(surface);
-  if (!clean) return Error{clean.error()};
+  if (!clean) return clean.failure();
   auto solid = std::make_shared<MeshSolid>();
   solid->surface_ = std::move(clean).value();
   solid->grow_tree();
@@ -206,7 +206,7 @@ std::size_t MeshSolid::crossings(const Vec3& y0, const Vec3& y1, std::span<doubl
 
 Result<SolidPtr> mesh_solid(const TriangleSurface& surface) {
   auto solid = MeshSolid::make(surface);
-  if (!solid) return Error{solid.error()};
+  if (!solid) return solid.failure();
   return SolidPtr(std::move(solid).value());
 }
 

@@ -41,7 +41,7 @@ Result<EdgeContact> EdgeContact::build(Builder& builder, const SurfaceContactDef
   for (Index e = 0; e < edges->count(); ++e) area[at(e)] = (*edges)[e].area;
   const auto rows = pair_rows(builder, def, def.name + ", edges", layer, area, edges->size(), *setup);
   const auto pool = first_pairs(builder, EdgeContactPool(setup, std::vector<Index>(area.size(), -1)));
-  if (auto r = find_overlap(builder, def, *pool, *rows); !r) return Error{r.error()};
+  if (auto r = find_overlap(builder, def, *pool, *rows); !r) return r.failure();
   rows->stencil_pool = builder.add_stencils(pool);
   out.row_pool_ = builder.add_rows(rows);
   out.rows_ = rows;

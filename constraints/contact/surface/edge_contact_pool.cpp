@@ -57,7 +57,7 @@ Renewal EdgeContactPool::renewed(const RenewalRequest& q) const {
 
 Result<std::shared_ptr<const StencilPool>> EdgeContactPool::restored(std::span<const double> memory) const {
   auto kept = checked_pairs(memory, friction_memory().per_point(), stencils(), setup().name, "edge");
-  if (!kept) return Error{kept.error()};
+  if (!kept) return kept.failure();
   return std::shared_ptr<const StencilPool>(
       std::make_shared<EdgeContactPool>(geometry().setup(), std::move(kept).value()));
 }

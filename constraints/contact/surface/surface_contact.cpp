@@ -186,7 +186,7 @@ class SurfaceContactEffect final : public EffectSource {
   Result<std::unique_ptr<EffectInstance>> build(Builder& builder) const override {
     const std::string called = "surface contact \"" + def_.name + "\"";
     auto sides = both_sides(builder, called);
-    if (!sides) return Error{sides.error()};
+    if (!sides) return sides.failure();
     auto setup = std::make_shared<SurfaceContactPool::Setup>();
     setup->surface = std::make_shared<ContactSurface>(sides.value(), builder.rest());
     const ContactSurface& surface = *setup->surface;
@@ -195,11 +195,11 @@ class SurfaceContactEffect final : public EffectSource {
     for (const SurfacePoint& p : surface.points()) area.push_back(p.area);
     const auto rows = pair_rows(builder, def_, def_.name, layer, area, surface.size(), *setup);
     const auto pool = first_pairs(builder, SurfaceContactPool(setup, std::vector<Index>(area.size(), -1)));
-    if (auto r = find_overlap(builder, *pool, *rows); !r) return Error{r.error()};
+    if (auto r = find_overlap(builder, *pool, *rows); !r) return r.failure();
     rows->stencil_pool = builder.add_stencils(pool);
     const Index row_pool = builder.add_rows(rows);
     auto edges = EdgeContact::build(builder, def_, surface, layer);
-    if (!edges) return Error{edges.error()};
+    if (!edges) return edges.failure();
     return std::unique_ptr<EffectInstance>(
         std::make_unique<SurfaceContactInstance>(rows, row_pool, setup->surface, std::move(edges).value()));
   }
@@ -220,7 +220,7 @@ class SurfaceContactEffect final : public EffectSource {
   Result<std::array<SurfaceFaces, 2>> both_sides(const Builder& builder, const std::string& called) const {
     std::array<SurfaceFaces, 2> sides;
     auto first = outward_faces(builder, def_.body, def_.surfaces, called);
-    if (!first) return Error{first.error()};
+    if (!first) return first.failure();
     sides[0] = {std::move(first).value(), nodes_of_faces(builder, def_.body)};
     if (!def_.against) {
       if (!def_.against_surfaces.empty())
@@ -228,7 +228,7 @@ class SurfaceContactEffect final : public EffectSource {
       return sides;
     }
     auto second = outward_faces(builder, *def_.against, def_.against_surfaces, called);
-    if (!second) return Error{second.error()};
+    if (!second) return second.failure();
     sides[1] = {std::move(second).value(), nodes_of_faces(builder, *def_.against)};
     std::vector<Index> shared = sides[0].faces, other = sides[1].faces, both;
     std::sort(shared.begin(), shared.end());

@@ -105,7 +105,7 @@ Result<std::shared_ptr<const StencilPool>> SurfaceContactPool::restored(
     std::span<const double> memory) const {
   auto kept = checked_pairs(memory, friction_memory().per_point(), setup().surface->triangles(), setup().name,
                             "triangle");
-  if (!kept) return Error{kept.error()};
+  if (!kept) return kept.failure();
   return std::shared_ptr<const StencilPool>(
       std::make_shared<SurfaceContactPool>(geometry().setup(), std::move(kept).value()));
 }

@@ -318,7 +318,7 @@ Result<void> embed_points(const LatticeDef& def, const Grid& grid, const std::ve
 }  // namespace
 
 Result<Lattice> lattice_mesh(const LatticeDef& given) {
-  if (auto r = check(given); !r) return Error{r.error()};
+  if (auto r = check(given); !r) return r.failure();
   LatticeDef def = given;
   if (signed_volume(def) < 0) {
     for (std::size_t t = 0; t < def.triangles.size(); t += 3)
@@ -340,7 +340,7 @@ Result<Lattice> lattice_mesh(const LatticeDef& given) {
 
   Lattice lattice;
   const std::vector<Index> place = add_cells(grid, cube, corners, lattice.mesh);
-  if (auto r = embed_points(def, grid, cell, place, cube, lattice); !r) return Error{r.error()};
+  if (auto r = embed_points(def, grid, cell, place, cube, lattice); !r) return r.failure();
   return lattice;
 }
 

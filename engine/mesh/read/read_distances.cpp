@@ -119,7 +119,7 @@ Result<DistanceGrid> read_distances(const std::string& path, double scale) {
   } catch (const mesh_files::ReadFailure& failure) {
     return Error{failure.message};
   } catch (const std::bad_alloc&) {
-    return Error{path + ": the grid does not fit into memory; use a coarser one"};
+    return Error{path + ": the grid does not fit into memory; use a coarser one", ErrorKind::no_memory};
   }
 }
 

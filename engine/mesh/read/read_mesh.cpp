@@ -106,7 +106,7 @@ Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) 
   } catch (const mesh_files::ReadFailure& failure) {
     return Error{failure.message};
   } catch (const std::bad_alloc&) {
-    return Error{path + ": the mesh does not fit into memory; use a coarser one"};
+    return Error{path + ": the mesh does not fit into memory; use a coarser one", ErrorKind::no_memory};
   } catch (const std::exception& other) {
     return Error{path + ": reading failed: " + other.what()};
   }

@@ -50,7 +50,7 @@ Result<TriangleSurface> read_obj(const std::string& path, const std::string& con
       std::vector<Index> face;
       for (std::string word; words >> word;) {
         auto c = corner(word, s.points.size(), line_of(path, line));
-        if (!c) return Error{c.error()};
+        if (!c) return c.failure();
         face.push_back(c.value());
       }
       if (face.size() < 3)
@@ -132,7 +132,7 @@ Result<TriangleSurface> read_any_surface(const std::string& path) {
     return Error{failure.message};
   }
   auto mesh = read_mesh(path);
-  if (!mesh) return Error{mesh.error()};
+  if (!mesh) return mesh.failure();
   return boundary_of(mesh.value());
 }
 
