@@ -43,7 +43,7 @@ class Progress {
                 "vol change", "min J", "elapsed", "ETA");
   }
   void line(const StepRecord& r, int steps) {
-    if (r.rejected > 0 || r.work.stand_ins > 0) note_trouble(r);
+    if (r.rejected > 0 || r.work.dual.stand_ins > 0) note_trouble(r);
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     const double eta = r.step > 0 ? elapsed / r.step * (steps - r.step) : 0;
     const std::string step = std::to_string(r.step) + "/" + std::to_string(steps);
@@ -56,7 +56,7 @@ class Progress {
  private:
   static void note_trouble(const StepRecord& r) {
     std::printf("       (%d increments, %d tried again shorter", r.substeps, r.rejected);
-    if (r.work.stand_ins > 0) std::printf(", %d left to another method", r.work.stand_ins);
+    if (r.work.dual.stand_ins > 0) std::printf(", %d left to another method", r.work.dual.stand_ins);
     std::printf(")\n");
   }
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();

@@ -66,7 +66,7 @@ Outcome run(Solver solver, int width, VolumeSpace space) {
   out.cells = world.mesh(body).cell_count();
   out.unknowns = world.size().matrix_size;
   out.newton = r.iterations + r.corrections;
-  out.linear = static_cast<int>(r.linear_iterations);
+  out.linear = static_cast<int>(r.krylov.iterations);
   out.shifted = r.shifted;
   out.ok = r.status == StepStatus::converged;
   if (!out.ok) std::fprintf(stderr, "%s\n", r.reason.c_str());

@@ -48,8 +48,8 @@ void print(const char* scene, const char* way, const StepReport& r, const WorldS
   std::printf(
       "%-24s %-20s %7.2f s, %3d iterations, %7.1f ms each, %4d dual steps, %5lld gradient iterations, "
       "%9lld non-zeros of factors%s\n",
-      scene, way, r.seconds.total, r.iterations, 1e3 * r.seconds.total / n, r.dual_steps,
-      static_cast<long long>(r.dual_iterations), static_cast<long long>(size.factor_nonzeros),
+      scene, way, r.seconds.total, r.iterations, 1e3 * r.seconds.total / n, r.dual.steps,
+      static_cast<long long>(r.dual.iterations), static_cast<long long>(size.factor_nonzeros),
       r.status == StepStatus::converged ? "" : (" NOT CONVERGED: " + r.reason).c_str());
   std::fflush(stdout);
 }

@@ -111,7 +111,7 @@ void measure(const Case& c, const BoxMeshDef& box, Element element, int threads,
     cost.good = cost.good && r.status == StepStatus::converged;
     cost.factorizations += r.factorizations;
     cost.corrections += r.corrections;
-    cost.linear_iterations += r.linear_iterations;
+    cost.linear_iterations += r.krylov.iterations;
   }
   const double seconds = processor_seconds() - start;
   cost.iteration = std::min(cost.iteration, seconds / std::max(1, cost.factorizations));

@@ -73,7 +73,7 @@ std::string table_row(const StepRecord& r) {
   std::string line = std::to_string(r.step);
   for (const double v :
        {r.time, static_cast<double>(r.work.iterations), static_cast<double>(r.substeps),
-        static_cast<double>(r.rejected), static_cast<double>(r.work.stand_ins), r.force_residual,
+        static_cast<double>(r.rejected), static_cast<double>(r.work.dual.stand_ins), r.force_residual,
         r.row_residual, r.constitutive_residual, r.volume_row_residual, r.total.volume_change(), r.min_J,
         r.max_J, static_cast<double>(r.inverted_cells), r.energy.elastic, r.energy.kinetic, r.energy.gravity,
         r.load_potential(), r.total_energy(), r.seconds}) {

@@ -140,7 +140,7 @@ void TortureBench::take(const StepReport& report, TortureResult& out) const {
   out.shifted += report.shifted;
   out.projected += report.projected;
   out.rescues += report.rescues;
-  out.stand_ins += report.stand_ins;
+  out.stand_ins += report.dual.stand_ins;
   out.seconds += report.seconds.total;
 }
 

@@ -262,7 +262,7 @@ bool DualAscent::climb(SaddleReport& report) {
     curvature += direction_[r] * image_[r];
     size += direction_[r] * kkt_.dual_preconditioner()[r] * direction_[r];
   }
-  ++report.dual_steps;
+  ++report.dual.steps;
   // Without curvature it is multipliers of rows that depend on each other, which do nothing.
   constexpr double no_curvature = 1e-13;
   const double omega = curvature > no_curvature * size ? up / curvature : 0;
@@ -279,7 +279,7 @@ bool DualAscent::climb(SaddleReport& report) {
 SaddleReport DualAscent::solve_from_here(const SaddleProblem& p, const SaddleOptions& options) {
   const std::int64_t linear_before = kkt_.linear_iterations();
   SaddleReport report = ascend(p, options);
-  report.linear_iterations = kkt_.linear_iterations() - linear_before;
+  report.krylov.iterations = kkt_.linear_iterations() - linear_before;
   return report;
 }
 
@@ -311,7 +311,7 @@ SaddleReport DualAscent::ascend(const SaddleProblem& p, const SaddleOptions& opt
     if (k == 0 && !std::isfinite(now_.energy)) return fail(SaddleStatus::not_finite);
     const bool done = evaluator_.balanced(p, options, now_, report);
     if (!done && interrupted()) return fail(SaddleStatus::cancelled);
-    report.linear_iterations = kkt_.linear_iterations() - linear_before;
+    report.krylov.iterations = kkt_.linear_iterations() - linear_before;
     if (k > 0 && progress) progress(k, report.force_residual, report.row_residual);
     if (done) return report;
     const double left = std::max(report.force_residual / options.force_tolerance,

@@ -71,8 +71,8 @@ struct SaddleReport : SolveCounters {
   void add_work(const SaddleReport& earlier) { SolveCounters::operator+=(earlier); }
   // What iterations inside of steps took, in factorizations, roughly: the same on every machine.
   double inner_work() const {
-    return 0.1 * dual_steps + 0.05 * static_cast<double>(dual_iterations) +
-           0.02 * static_cast<double>(linear_iterations);
+    return 0.1 * dual.steps + 0.05 * static_cast<double>(dual.iterations) +
+           0.02 * static_cast<double>(krylov.iterations);
   }
   double work() const { return factorizations + 0.1 * corrections + inner_work(); }
 };

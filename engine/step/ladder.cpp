@@ -50,11 +50,11 @@ constexpr Rung rungs[] = {
     {"the same from the state", "the prediction led nowhere", "", Method::automatic, guess_failed,
      solve_from_state},
     {"augmented_gradients from the state",
-     "a dual method or an ascent is stuck, and it did not fail as often itself", "stand_ins",
+     "a dual method or an ascent is stuck, and it did not fail as often itself", "dual.stand_ins",
      Method::augmented_gradients, stands_in<Method::augmented_gradients>,
      solve_by<Method::augmented_gradients>},
-    {"saddle_point from the state", "a dual or augmented method is stuck", "stand_ins", Method::saddle_point,
-     stands_in<Method::saddle_point>, solve_by<Method::saddle_point>},
+    {"saddle_point from the state", "a dual or augmented method is stuck", "dual.stand_ins",
+     Method::saddle_point, stands_in<Method::saddle_point>, solve_by<Method::saddle_point>},
 };
 
 constexpr Remedy all_remedies[] = {

@@ -82,7 +82,7 @@ SaddleReport Stepper::solve_by(SaddlePoint& other, const SaddleProblem& problem,
   if (report.status != SaddleStatus::converged) return report;
   SaddleReport last = solve(problem, options);
   last.add_work(report);
-  if (last.status == SaddleStatus::converged) last.stand_ins = 1;
+  if (last.status == SaddleStatus::converged) last.dual.stand_ins = 1;
   return last;
 }
 

@@ -5,17 +5,40 @@
 
 namespace isochor {
 
+// Of methods that ascend on multipliers.
+struct DualCounters {
+  int steps = 0;                // of dual ascent
+  int stand_ins = 0;            // increments left to Method::augmented_gradients or saddle_point
+  std::int64_t iterations = 0;  // of conjugate gradients on multipliers
+
+  DualCounters& operator+=(const DualCounters& o) {
+    steps += o.steps;
+    stand_ins += o.stand_ins;
+    iterations += o.iterations;
+    return *this;
+  }
+};
+
+// Of Solver::iterative.
+struct KrylovCounters {
+  std::int64_t iterations = 0;  // for directions
+
+  KrylovCounters& operator+=(const KrylovCounters& o) {
+    iterations += o.iterations;
+    return *this;
+  }
+};
+
 struct SolveCounters {
-  int iterations = 0;              // Newton iterations, each with its own factorization
+  // Of Newton iterations, which are part of every method.
+  int iterations = 0;              // each with its own factorization
   int corrections = 0;             // further steps on factors at hand
   int lagged = 0;                  // FrictionCoupling::coupled: iterations that fell back to lagged friction
   int factorizations = 0;          // mending an inertia takes more than one an iteration
   int trials = 0;                  // evaluations of line searches
   int projected = 0, shifted = 0;  // iterations whose matrix had to be mended: by projection, by a shift
-  int dual_steps = 0;              // of dual ascent
-  int stand_ins = 0;  // increments that a dual method left to Method::augmented_gradients or saddle_point
-  std::int64_t dual_iterations = 0;    // of conjugate gradients on multipliers
-  std::int64_t linear_iterations = 0;  // of Solver::iterative, for directions
+  DualCounters dual;
+  KrylovCounters krylov;
 
   int solves() const { return iterations + corrections; }  // with the factors of an iteration
 
@@ -27,10 +50,8 @@ struct SolveCounters {
     trials += o.trials;
     projected += o.projected;
     shifted += o.shifted;
-    dual_steps += o.dual_steps;
-    stand_ins += o.stand_ins;
-    dual_iterations += o.dual_iterations;
-    linear_iterations += o.linear_iterations;
+    dual += o.dual;
+    krylov += o.krylov;
     return *this;
   }
 };

@@ -67,10 +67,10 @@ TEST_CASE("all methods bend a beam alike") {
       for (const Method method : kMethods) {
         const Outcome other = bend(method, element, poisson, VolumeSpace::node);
         INFO(other.method << ", nu = " << poisson << ": " << other.report.reason << " iterations "
-                          << other.report.iterations << ", ascents " << other.report.dual_steps
-                          << ", conjugate gradients " << other.report.dual_iterations);
+                          << other.report.iterations << ", ascents " << other.report.dual.steps
+                          << ", conjugate gradients " << other.report.dual.iterations);
         CHECK(other.report.status == StepStatus::converged);
-        CHECK(other.report.stand_ins == 0);
+        CHECK(other.report.dual.stand_ins == 0);
         CHECK(distance(reference, other) < 1e-8 * 0.4);
       }
     }
@@ -90,11 +90,11 @@ TEST_CASE("all methods take element rows and time steps alike") {
 TEST_CASE("the dual methods say how much they worked") {
   const Outcome gradients = bend(Method::dual_gradients, Element::tet4, 0.5, VolumeSpace::node);
   const Outcome augmented = bend(Method::augmented_gradients, Element::tet4, 0.5, VolumeSpace::node);
-  CHECK(gradients.report.dual_iterations > 0);
-  CHECK(augmented.report.dual_iterations > 0);
-  CHECK(augmented.report.dual_iterations < gradients.report.dual_iterations);
+  CHECK(gradients.report.dual.iterations > 0);
+  CHECK(augmented.report.dual.iterations > 0);
+  CHECK(augmented.report.dual.iterations < gradients.report.dual.iterations);
   const Outcome ascent = bend(Method::dual_ascent, Element::tet4, 0.5, VolumeSpace::node);
-  CHECK(ascent.report.dual_steps > 1);
+  CHECK(ascent.report.dual.steps > 1);
 }
 
 TEST_CASE("an increment that a dual method cannot solve is left to a stronger one, and told") {
@@ -112,11 +112,11 @@ TEST_CASE("an increment that a dual method cannot solve is left to a stronger on
   };
   const Outcome reference = press(Method::saddle_point);
   REQUIRE(reference.report.status == StepStatus::converged);
-  CHECK(reference.report.stand_ins == 0);
+  CHECK(reference.report.dual.stand_ins == 0);
   const Outcome dual = press(Method::dual_gradients);
   INFO(dual.report.reason);
   CHECK(dual.report.status == StepStatus::converged);
-  CHECK(dual.report.stand_ins == 1);
+  CHECK(dual.report.dual.stand_ins == 1);
   CHECK(dual.report.rejected_substeps == 0);
   CHECK(distance(reference, dual) < 1e-8 * 0.1);
 }

@@ -100,7 +100,7 @@ TEST_CASE("a budget bounds every method") {
       const StepReport r = finger.world.step(1.0 / 60, limit);
       INFO(static_cast<int>(method) << ", step " << k << ": " << r.reason);
       CHECK(r.iterations <= 4);
-      CHECK(r.dual_steps <= 8);
+      CHECK(r.dual.steps <= 8);
       CHECK((r.status != StepStatus::invalid && r.status != StepStatus::cancelled));
     }
   }

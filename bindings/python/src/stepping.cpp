@@ -60,10 +60,10 @@ void put_counters(const SolveCounters& work, py::dict& out) {
   out["trials"] = work.trials;
   out["projected"] = work.projected;
   out["shifted"] = work.shifted;
-  out["dual_steps"] = work.dual_steps;
-  out["stand_ins"] = work.stand_ins;
-  out["dual_iterations"] = work.dual_iterations;
-  out["linear_iterations"] = work.linear_iterations;
+  out["dual_steps"] = work.dual.steps;
+  out["stand_ins"] = work.dual.stand_ins;
+  out["dual_iterations"] = work.dual.iterations;
+  out["linear_iterations"] = work.krylov.iterations;
 }
 
 py::dict dict_of(const StepReport& r) {

@@ -74,8 +74,8 @@ bool Newton::direction(SaddleReport& report) {
           ? kkt_.solve_coupled(part_ ? &*part_ : nullptr, held_.rows(), work_.node_rhs, work_.row_rhs,
                                coupled_tolerance_, step_.dx, step_.lambda, seconds_)
           : kkt_.solve(work_.node_rhs, work_.row_rhs, step_.dx, step_.lambda, seconds_);
-  report.dual_iterations += kkt_.dual_iterations() - before;
-  report.linear_iterations += kkt_.linear_iterations() - linear_before;
+  report.dual.iterations += kkt_.dual_iterations() - before;
+  report.krylov.iterations += kkt_.linear_iterations() - linear_before;
   report.linear_residual = kkt_.residual();
   for (std::size_t i = 0; i < step_.dx.size(); ++i) step_.dx[i] += gap_.way[i];
   for (std::size_t r = 0; r < step_.lambda.size(); ++r) step_.lambda[r] += now_.lambda[r];
