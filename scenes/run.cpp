@@ -279,6 +279,7 @@ void Run::march(RunOutputs* outputs) {
     } else {
       result_.work += report;
       result_.stages += report.seconds;
+      result_.wall_s = wall_before_ + seconds_since(start_);
     }
     if (!over && last) {
       result_.status = RunStatus::converged;

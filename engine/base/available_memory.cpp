@@ -30,9 +30,12 @@ double number_in(const char* file) {
   return in >> value ? value : kUnknown;  // "max" is no number
 }
 
-std::string gigabytes(double bytes) {
+std::string size_text(double bytes) {
   char text[32];
-  std::snprintf(text, sizeof text, bytes < 1e9 ? "%.2g GB" : "%.3g GB", bytes / 1e9);
+  if (bytes < 1e8)
+    std::snprintf(text, sizeof text, "%.0f MB", bytes / 1e6);
+  else
+    std::snprintf(text, sizeof text, bytes < 1e9 ? "%.2g GB" : "%.3g GB", bytes / 1e9);
   return text;
 }
 
@@ -69,7 +72,7 @@ std::string too_large_for_memory(double cells, CellType type, MeshUse use) {
   char count[32];
   std::snprintf(count, sizeof count, "%.0f", cells);
   return std::string("the mesh has ") + count + (type == CellType::hex8 ? " hexahedra" : " tetrahedra") +
-         ", which take at least " + gigabytes(need) + " of memory, and " + gigabytes(left) +
+         ", which take at least " + size_text(need) + " of memory, and " + size_text(left) +
          " are free; use a coarser mesh, or a machine with more memory";
 }
 

@@ -169,7 +169,7 @@ Result<Index> Builder::add_body(const BodyDef& def) {
   }
   const CellType cells = def.element == Element::tet10 ? CellType::tet10 : def.mesh.cell_type;
   if (const auto why = too_large_for_memory(def.mesh.cell_count(), cells, MeshUse::simulate); !why.empty())
-    return Error{"body \"" + def.name + "\": " + why};
+    return Error{"body \"" + def.name + "\": " + why, ErrorKind::no_memory};
   const MeshReport report = check_mesh(def.mesh);
   BodyData body;
   std::string doubtful_units;

@@ -115,6 +115,7 @@ TEST_CASE("budget, interruption and failure keep what was reached") {
     const RunResult r =
         run_scene(test::small_scene({"analysis.max_iterations=1", "tractions.pull.amount=1000"}), options);
     CHECK(r.status == RunStatus::not_converged);
+    CHECK(r.wall_s >= r.stages.total);  // of steps that were not taken as well
     CHECK_FALSE(r.reason.empty());
     CHECK(Json::parse(test::slurp(scratch / "summary.json"))["status"] == "not_converged");
   }

@@ -62,7 +62,8 @@ Result<Mesh> box_mesh(const BoxMeshDef& def) {
   const double cells = static_cast<double>(nx) * ny * nz * (def.cell_type == CellType::hex8 ? 1 : 6);
   if (const auto why = too_large_for_memory(cells, def.cell_type, MeshUse::check); !why.empty()) {
     return Error{"box mesh of " + std::to_string(nx) + " x " + std::to_string(ny) + " x " +
-                 std::to_string(nz) + " divisions: " + why};
+                     std::to_string(nz) + " divisions: " + why,
+                 ErrorKind::no_memory};
   }
   if (static_cast<std::int64_t>(nx) * ny * nz > 20'000'000) {
     return Error{"box mesh: " + std::to_string(static_cast<std::int64_t>(nx) * ny * nz) +
