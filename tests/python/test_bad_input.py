@@ -1,5 +1,7 @@
 """Bad input: one sentence, and nothing is lost."""
 
+import resource
+
 import numpy as np
 import pytest
 
@@ -113,3 +115,16 @@ def test_a_gauge_or_key_that_there_is_not_names_those_that_are(finger):
     with pytest.raises(AttributeError) as error:
         finger.air.presure
     assert "gauges: pressure, volume" in str(error.value)
+
+
+def test_memory_that_runs_out_is_a_memory_error():
+    with open("/proc/self/statm") as f:
+        in_use = int(f.read().split()[0]) * resource.getpagesize()
+    soft, hard = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (in_use + 64_000_000, hard))
+    try:
+        with pytest.raises(MemoryError, match=r"box mesh of 200 x 200 x 200 divisions.* take at least .* are free"):
+            iso.box_mesh(divisions=(200, 200, 200), cell_type="hex8")
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
+    assert iso.box_mesh(divisions=(1, 1, 1)).cells.shape == (6, 4)
