@@ -183,7 +183,7 @@ Result<void> check_independent(const VolumeRegion& region, const VolumeZones& zo
 VolumeStrain strain_in(const VolumeDef& def, const MaterialModel& material) {
   if (def.strain != VolumeStrain::by_law) return def.strain;
   // Rows without compliance have no U(J): the linear strain keeps the whole volume, not only each row's mean.
-  if (def.hard || (material.inverse_bulk() == 0 && material.field_cells() == 0)) return VolumeStrain::linear;
+  if (def.hard || material.inverse_bulk() == 0) return VolumeStrain::linear;
   const VolumeStrain strain = material.volume_strain();
   if (def.space != VolumeSpace::element || strain == VolumeStrain::linear) return strain;
   return strain == VolumeStrain::mixed ? VolumeStrain::mean_mixed : VolumeStrain::mean_logarithmic;

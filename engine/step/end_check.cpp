@@ -14,6 +14,9 @@ namespace {
 constexpr double largest_row_at_end = 0.02;
 // Rows that a fixed number of sweeps leaves unmet: beyond this it is no longer their solution in any sense.
 constexpr double largest_row_of_sweeps = 0.5;
+// Cells that are inside out by more than their volume are no way through an inversion, they are sweeps that
+// have blown up; what moves from outside hides that from the balance of energy.
+constexpr double most_inverted_of_sweeps = -1;
 // Of a fixed number of sweeps, which end where they end.
 constexpr double energy_gain_of_sweeps = 0.1;
 // An unfinished iterate may not have cells flatter than this and than those it began with. Where rows have
@@ -151,8 +154,15 @@ bool EndCheck::admits(double h, const SaddleProblem& problem, const Trial& trial
   const StoredEnergy stored =
       part == 1 ? method.stored(problem) : method.stored_at(problem, end, trial.lambda);
   if (!std::isfinite(stored.energy)) return refuse("the energy has no value there");
+  // Numbers may be finite and their squares not: of sweeps that blow up, say.
+  if (!std::isfinite(report.force_residual) || !std::isfinite(report.row_residual))
+    return refuse("forces are beyond the range of numbers there");
   if (report.status != SaddleStatus::converged) return may_stay_unfinished(stored, report);
   const bool sweeps = context_.options.method == Method::position_based;
+  if (sweeps && verdict_.min_J < most_inverted_of_sweeps) {
+    return refuse("sweeps have turned cells inside out to J = " + number(verdict_.min_J) +
+                  ": take more sweeps, shorter steps or another method");
+  }
   const double most = !sweeps ? largest_row_at_end : part == 1 ? largest_row_of_sweeps : 0.1;
   if ((part != 1 || sweeps) && !(stored.row <= most)) {
     return refuse("rows are off by " + number(stored.row) + " of their measure at the end of the step" +

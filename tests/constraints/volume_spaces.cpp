@@ -389,3 +389,28 @@ TEST_CASE("zones and rings that mean nothing are refused") {
   def.zones = {half("left", -1, 0.5, 0), half("right", 0.5, 2, 0), half("both", -1, 2, 0)};
   CHECK_THAT(refusal(def), ContainsSubstring("\"both\" repeats"));
 }
+
+TEST_CASE("rows without compliance keep the whole volume, whatever the law calls its volume part") {
+  const MaterialPtr law = value(isochoric_ogden({{{1e5, 2}, {-2e4, -2}}, 0.5, {VolumeEnergy::logarithmic}}));
+  for (const bool field : {false, true}) {
+    for (const Element element : {Element::tet4, Element::tet4_edge_smoothed, Element::tet10}) {
+      World world = test::make_world(small_system());
+      const Mesh mesh = test::block({0, 0, 0}, {1, 1, 1}, {2, 2, 2});
+      std::vector<double> factor(mesh.cells.size() / 4, 1);
+      for (std::size_t c = 0; c < factor.size(); ++c) factor[c] = 0.2 + static_cast<double>(c % 7);
+      const BodyId body =
+          test::add_body(world, mesh, element, field ? value(with_stiffness_field(law, factor)) : law);
+      test::add_volume(world, body);
+      test::hold(world, body, {"z0"});
+      TractionDef pull;
+      pull.surface = "z1";
+      pull.traction = {3e4, 0, 4e4};
+      value(world.add(traction(pull)));
+      test::must_advance(world, 1);
+      const BodyMeasures m = world.measures(body);
+      INFO("field " << field << ", element " << static_cast<int>(element));
+      CHECK(m.max_J > 1.001);
+      CHECK(m.volume == Approx(m.rest_volume).epsilon(1e-9));
+    }
+  }
+}
