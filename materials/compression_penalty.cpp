@@ -84,6 +84,7 @@ class PenalizedModel final : public MaterialModel {
   bool defined_inverted() const override { return base_->defined_inverted(); }
   VolumeStrain volume_strain() const override { return base_->volume_strain(); }
   std::vector<std::string> warnings() const override { return base_->warnings(); }
+  const MaterialMemory* memory() const override { return base_->memory(); }
   bool has_separate_volume() const override { return base_->has_separate_volume(); }
   std::size_t field_cells() const override { return base_->field_cells(); }
   double stiffness_factor(Index cell) const override { return base_->stiffness_factor(cell); }

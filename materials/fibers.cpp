@@ -274,6 +274,7 @@ class FiberModel final : public MaterialModel {
   }
   VolumeStrain volume_strain() const override { return matrix_->volume_strain(); }
   std::vector<std::string> warnings() const override { return matrix_->warnings(); }
+  const MaterialMemory* memory() const override { return matrix_->memory(); }
   bool has_separate_volume() const override { return matrix_->has_separate_volume(); }
   std::size_t field_cells() const override { return cells_ > 0 ? cells_ : matrix_->field_cells(); }
   double stiffness_factor(Index cell) const override { return matrix_->stiffness_factor(cell); }

@@ -189,6 +189,11 @@ Result<MaterialPtr> with_poisson_field(const std::function<Result<MaterialPtr>(d
                    "the law has a field of its own; put the field of Poisson's ratio on the law without "
                    "fields and the others on top"};
     }
+    if (material.value()->memory()) {
+      return Error{who +
+                   "the law has a memory, which does not go with a field of Poisson's ratio; give each "
+                   "ratio a region of its own"};
+    }
     if (!material.value()->has_separate_volume()) {
       return Error{who + "the energy of the law " + std::string(material.value()->name()) +
                    " is no sum of a part without Poisson's ratio and a volume part; give each ratio a region "

@@ -64,7 +64,12 @@ class ScaledMaterial final : public Material {
 class ScaledModel final : public MaterialModel {
  public:
   ScaledModel(MaterialPtr base, std::vector<double> factor)
-      : base_(std::move(base)), factor_(std::move(factor)) {}
+      : base_(std::move(base)), factor_(std::move(factor)) {
+    if (!base_->memory()) return;
+    memory_ = *base_->memory();
+    for (auto& branch : memory_.branches)
+      branch.spring = std::make_shared<ScaledMaterial>(std::move(branch.spring), factor_);
+  }
   std::string_view name() const override { return base_->name(); }
   std::shared_ptr<const Material> distortional() const override {
     return std::make_shared<ScaledMaterial>(base_->distortional(), factor_);
@@ -82,6 +87,7 @@ class ScaledModel final : public MaterialModel {
   VolumeStrain volume_strain() const override { return base_->volume_strain(); }
   std::vector<std::string> warnings() const override { return base_->warnings(); }
   bool has_separate_volume() const override { return base_->has_separate_volume(); }
+  const MaterialMemory* memory() const override { return base_->memory() ? &memory_ : nullptr; }
   std::size_t field_cells() const override { return factor_.size(); }
   double stiffness_factor(Index cell) const override {
     return base_->stiffness_factor(cell) * factor_[at(cell)];
@@ -94,6 +100,7 @@ class ScaledModel final : public MaterialModel {
  private:
   MaterialPtr base_;
   std::vector<double> factor_;
+  MaterialMemory memory_;
 };
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include "isochor/materials.h"
 #include "materials/elastic_constants.h"
 #include "materials/energy_model.h"
-#include "materials/lane_functions.h"
+#include "engine/math/lane_functions.h"
 #include "materials/strain_batch.h"
 
 namespace isochor {

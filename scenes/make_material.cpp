@@ -317,7 +317,11 @@ static Result<std::vector<FiberFamily>> make_fibers(const MaterialDef& def, cons
 }
 
 Result<MaterialPtr> make_material(const MaterialDef& def, const std::string& folder, const Mesh* mesh) {
+  if (def.prony.empty() && def.static_time != StaticTime::long_term)
+    return Error{"static_time is given without prony, whose time it would be; give its terms or drop it"};
   auto matrix = make_varied(def, folder);
+  if (matrix && !def.prony.empty())
+    matrix = with_prony_series(std::move(matrix).value(), def.prony, def.static_time);
   if (matrix && !def.fibers.empty()) {
     auto families = make_fibers(def, mesh);
     if (!families) return families.failure();

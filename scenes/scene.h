@@ -14,6 +14,7 @@
 #include "isochor/generate.h"
 #include "isochor/lattice.h"
 #include "isochor/mesh_select.h"
+#include "isochor/viscoelastic.h"
 #include "isochor/world.h"
 #include "scenes/effects/list.h"
 
@@ -89,6 +90,8 @@ struct MaterialDef {
   MaterialLaw law = MaterialLaw::neo_hookean;
   ElasticConstants constants;  // of laws with constants of their own, only Poisson's ratio counts
   LawConstants own;
+  std::vector<PronyTerm> prony;  // beside it, none: an elastic material
+  StaticTime static_time = StaticTime::long_term;
   std::vector<SceneFibers> fibers;
   CompressionPenalty compression_penalty;  // as it is made: none
   CellField stiffness_field;               // factors on the stiffness of the material

@@ -11,6 +11,17 @@
 
 namespace isochor {
 
+// What of a material flows: springs with a dashpot each, beside its energy
+// (engine/elements/relaxation_pool.h).
+struct MaterialMemory {
+  struct Branch {
+    std::shared_ptr<const Material> spring;
+    double time = 0;  // of relaxation [s]
+  };
+  std::vector<Branch> branches;
+  bool in_statics = false;  // else all has relaxed there
+};
+
 class MaterialModel {
  public:
   virtual ~MaterialModel() = default;
@@ -32,6 +43,8 @@ class MaterialModel {
   virtual bool has_separate_volume() const { return true; }
   // What the world should say about its constants, a sentence each.
   virtual std::vector<std::string> warnings() const { return {}; }
+  // Null: none.
+  virtual const MaterialMemory* memory() const { return nullptr; }
   // Fields of parameters: how many cells they were given for (those of the body's mesh; 0: none), and by how
   // much a cell is stiffer than the numbers above.
   virtual std::size_t field_cells() const { return 0; }

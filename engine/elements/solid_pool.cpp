@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/elements/contraction.h"
 #include "engine/elements/volume_strain.h"
 
 namespace isochor {
@@ -17,10 +18,6 @@ struct SolidPool::Lane {
 };
 
 namespace {
-
-constexpr std::size_t packed(std::size_t i, std::size_t j) {
-  return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i;
-}
 
 // dJ/dF, row-major.
 void cofactor(const double F[9], double g[9]) {
@@ -221,32 +218,6 @@ void SolidPool::definite_hessian(const StencilRequest& request, const Lane* lane
   if (material_) material_->add_anisotropic(request.definiteness, batch, response);
 }
 
-namespace {
-
-// hessian block (a, b) += w B_a A B_b for all b <= a, with the 9x9 A of one point.
-void contract(const double A[45], double w, const Vec3* B, std::size_t n, Mat3* blocks) {
-  // Regrouped so that the inner loops run over contiguous numbers: by_l[l][k][i][j] = w A[(i k)(j l)].
-  double by_l[3][27];
-  for (std::size_t l = 0; l < 3; ++l) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t j = 0; j < 3; ++j) by_l[l][9 * k + 3 * i + j] = w * A[packed(3 * i + k, 3 * j + l)];
-      }
-    }
-  }
-  for (std::size_t b = 0; b < n; ++b) {
-    double t[27];
-    for (std::size_t e = 0; e < 27; ++e)
-      t[e] = by_l[0][e] * B[b].x + by_l[1][e] * B[b].y + by_l[2][e] * B[b].z;
-    for (std::size_t a = b; a < n; ++a) {
-      double* block = blocks[a * (a + 1) / 2 + b].m.data();
-      for (std::size_t e = 0; e < 9; ++e) block[e] += B[a].x * t[e] + B[a].y * t[9 + e] + B[a].z * t[18 + e];
-    }
-  }
-}
-
-}  // namespace
-
 void SolidPool::write(const StencilRequest& request, const StencilSlots& slots, const Lane& lane, double psi,
                       const double* P_material, const double* A_material) const {
   const Index s = lane.stencil;
@@ -270,11 +241,7 @@ void SolidPool::write(const StencilRequest& request, const StencilSlots& slots, 
   double P[9], g[9] = {};
   if (functions > 0) cofactor(lane.F, g);
   for (int i = 0; i < 9; ++i) P[i] = P_material[i] + sigma * phi.first * g[i];
-  for (std::size_t a = 0; a < n; ++a) {
-    slots.gradient[first + a] +=
-        w * Vec3{P[0] * B[a].x + P[1] * B[a].y + P[2] * B[a].z, P[3] * B[a].x + P[4] * B[a].y + P[5] * B[a].z,
-                 P[6] * B[a].x + P[7] * B[a].y + P[8] * B[a].z};
-  }
+  contract_gradient(P, w, B, n, slots.gradient.data() + first);
   for (std::size_t a = 0; functions > 0 && a < n; ++a) {
     const Vec3 d = (w * phi.first) * Vec3{g[0] * B[a].x + g[1] * B[a].y + g[2] * B[a].z,
                                           g[3] * B[a].x + g[4] * B[a].y + g[5] * B[a].z,
@@ -294,7 +261,7 @@ void SolidPool::write(const StencilRequest& request, const StencilSlots& slots, 
       }
     }
   }
-  contract(A, w, B, n, slots.hessian.data() + hessian_offset()[at(s)]);
+  contract_hessian(A, w, B, n, slots.hessian.data() + hessian_offset()[at(s)]);
 }
 
 }  // namespace isochor

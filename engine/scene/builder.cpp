@@ -9,6 +9,7 @@
 #include "engine/base/available_memory.h"
 #include "engine/base/text.h"
 #include "engine/elements/element_guard.h"
+#include "engine/elements/relaxation_pool.h"
 #include "engine/elements/volume_strain.h"
 #include "engine/scene/scene_checks.h"
 #include "engine/scene/supports.h"
@@ -412,6 +413,19 @@ Result<std::shared_ptr<const SolidData>> Builder::cells_of(const BodyData& body,
   return kept;
 }
 
+// What flows, on the points of the energy.
+void Builder::add_memory(const BodyData& body, RegionData& region,
+                         const std::shared_ptr<const SolidData>& data) {
+  region.memory_pools.clear();
+  const MaterialMemory* memory = region.material->memory();
+  if (!memory || (quasi_static_ && !memory->in_statics)) return;
+  for (const auto& branch : memory->branches) {
+    region.memory_pools.push_back(add_stencils(std::make_shared<RelaxationPool>(
+        body.name + "/" + region.name + "/memory " + std::to_string(region.memory_pools.size()), data,
+        for_stencils(branch.spring, *region.material, *data), branch.time)));
+  }
+}
+
 // Elastic energy and volume functions share a stencil where both live on the cell; edge patches have their
 // own.
 Result<void> Builder::build_region(BodyData& body, RegionData& region) {
@@ -453,6 +467,7 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
     region.energy = energy = for_stencils(energy, *region.material, *patches.value());
     region.elastic_pool = add_stencils(std::make_shared<SolidPool>(
         body.name + "/" + region.name + "/patches", patches.value(), energy, VolumeStrain::linear));
+    add_memory(body, region, patches.value());
     energy = element_guard(body, region);
   }
   const auto& asked = region.volume_wanted;
@@ -469,7 +484,10 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
     const Index pool = add_stencils(std::make_shared<SolidPool>(body.name + "/" + region.name, data.value(),
                                                                 energy, static_cast<VolumeStrain>(strain)));
     if (wanted) region.volume_pool[strain] = pool;
-    if (energy && !smoothed) region.elastic_pool = pool;
+    if (energy && !smoothed) {
+      region.elastic_pool = pool;
+      add_memory(body, region, data.value());
+    }
     energy = nullptr;  // once only
   }
   return {};

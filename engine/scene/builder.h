@@ -154,6 +154,7 @@ struct RegionData {
   // Pools that were built for it.
   std::shared_ptr<const Material> energy;  // of elastic_pool
   Index elastic_pool = -1;
+  std::vector<Index> memory_pools;  // on the stencils of elastic_pool
   std::array<Index, kVolumeStrains> volume_pool{-1, -1, -1, -1, -1};  // by VolumeStrain
   std::array<bool, kVolumeStrains> volume_wanted{};
   bool has_volume_pool(Index pool) const {
@@ -309,6 +310,7 @@ class ISOCHOR_API Builder {
   Index take_body(BodyData body, const std::string& doubtful_units);
   void place_nodes(BodyData& body);
   Result<void> build_region(BodyData& body, RegionData& region);
+  void add_memory(const BodyData& body, RegionData& region, const std::shared_ptr<const SolidData>& data);
   Result<std::shared_ptr<const SolidData>> patches_of(const BodyData& body, RegionData& region) const;
   Result<std::shared_ptr<const SolidData>> cells_of(const BodyData& body, RegionData& region,
                                                     VolumeFunctions kind) const;

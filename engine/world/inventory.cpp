@@ -42,6 +42,17 @@ void add_memory(const SystemParts& parts, const SystemFacets& facets, const Owne
   }
 }
 
+// What the materials of a body keep.
+void add_memory(const BodyData& body, const SystemFacets& facets, Inventory::Of& of) {
+  for (const RegionData& region : body.regions) {
+    for (const Index pool : region.memory_pools) {
+      for (const auto& stencils : facets.remembering) {
+        if (stencils.pool == pool) of.memory.push_back({stencils.first, stencils.count});
+      }
+    }
+  }
+}
+
 }  // namespace
 
 Inventory take_inventory(const Description& said, const SystemParts& parts, const SystemFacets& facets) {
@@ -57,6 +68,7 @@ Inventory take_inventory(const Description& said, const SystemParts& parts, cons
                      {{at(body.first_node), body.mesh.nodes.size()}},
                      {},
                      {}};
+    add_memory(body, facets, all.bodies[b]);
   }
   all.effects.resize(said.sources.size());
   for (const Index e : said.order) {
@@ -78,7 +90,10 @@ Moving::Moving(const Inventory& before, const Inventory& after) : rows_after_(af
       if (a[i].present && b[i].present && a[i].generation == b[i].generation) f(a[i], b[i]);
     }
   };
-  each(before.bodies, after.bodies, [&](const auto& a, const auto& b) { match(a.nodes, b.nodes, nodes_); });
+  each(before.bodies, after.bodies, [&](const auto& a, const auto& b) {
+    match(a.nodes, b.nodes, nodes_);
+    match(a.memory, b.memory, memory_);
+  });
   each(before.effects, after.effects, [&](const auto& a, const auto& b) {
     match(a.nodes, b.nodes, nodes_);
     match(a.rows, b.rows, rows_);

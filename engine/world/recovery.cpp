@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "engine/elements/relaxation_pool.h"
 #include "engine/elements/volume_strain.h"
 #include "engine/mesh/cell_shape.h"
 #include "engine/world/node_fit.h"
@@ -41,6 +42,19 @@ PointState point_state(const SolidPool& pool, const Material* energy, Index sten
   for (int i = 0; i < 9; ++i) P(i / 3, i % 3) = response.P[i][0];
   p.stress = P * p.F.transpose() / p.J;
   return p;
+}
+
+// Cauchy stress of what flows at a point of the stencils of the energy.
+Matrix memory_stress(const RecoveryInput& in, const RegionData& region, Index stencil, int q,
+                     const PointState& p) {
+  Matrix P = Matrix::Zero();
+  for (const Index m : region.memory_pools) {
+    const auto& branch = static_cast<const RelaxationPool&>(*in.parts.stencil_pools[at(m)]);
+    double share[9];
+    branch.stress(stencil, q, in.x, in.parts.rest, in.memory[at(m)], share);
+    P += Eigen::Map<const Matrix>(share);
+  }
+  return P * p.F.transpose() / p.J;
 }
 
 struct CellState {
@@ -90,7 +104,10 @@ void add_patch_stress(const RecoveryInput& in, const RegionData& region, std::ve
   }
   Index stencil = 0;
   for (auto& [edge, p] : patches) {
-    p.stress = point_state(pool, energy.get(), stencil++, 0, in.x, in.parts.rest).stress;
+    const PointState point = point_state(pool, energy.get(), stencil, 0, in.x, in.parts.rest);
+    p.stress = point.stress;
+    if (!region.memory_pools.empty()) p.stress += memory_stress(in, region, stencil, 0, point);
+    ++stencil;
     for (const Index end : {edge.first, edge.second}) {
       nodes.add(end - in.body.first_node, (1 / p.volume) * p.moment, p.volume,
                 sample(p.stress, p.row_pressure / p.volume));
@@ -150,7 +167,8 @@ void add_region(const RecoveryInput& in, const RegionData& region, std::vector<C
     const double volume = pool.volume(s);
     const auto of_cell = pool.nodes()[s];
     for (int q = 0; q < pool.data().points; ++q) {
-      const PointState p = point_state(pool, energy.get(), s, q, in.x, in.parts.rest);
+      PointState p = point_state(pool, energy.get(), s, q, in.x, in.parts.rest);
+      if (!smoothed && !region.memory_pools.empty()) p.stress += memory_stress(in, region, s, q, p);
       const double w = p.weight / volume;
       const double pressure = row_pressure(in, region, s, q, p.J);
       cell.stress += w * p.stress;

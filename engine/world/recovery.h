@@ -13,6 +13,8 @@ struct RecoveryInput {
   std::span<const std::span<const double>> function_multiplier;
   // Multipliers of nodal rows by scene node, NaN where there is none: smoother than what cells give back.
   std::span<const double> node_multiplier;
+  // What pools keep between steps, by stencil pool; empty: nothing.
+  std::span<const std::span<const double>> memory;
 };
 
 // Cauchy stress of the energy plus the pressure of the rows. Edge-smoothed cells take the mean of the

@@ -224,6 +224,28 @@ bool World::Impl::ready() {
   return compiled();
 }
 
+namespace {
+
+// Memory goes from the end of one increment to the end of the next.
+Result<void> check_memory(const Builder& builder, const TimeScheme& scheme) {
+  if (scheme.evaluated_at() == 1 && !scheme.follows_paths()) return {};
+  for (const BodyData& body : builder.bodies()) {
+    for (const RegionData& region : body.regions) {
+      if (!body.present() || region.memory_pools.empty()) continue;
+      return Error{
+          "body \"" + body.name + "\", region \"" + region.name + "\": the material " +
+          std::string(region.material->name()) + " remembers, and the scheme " + std::string(scheme.name()) +
+          (scheme.follows_paths() ? " follows a path that has no time; use statics(), or let statics "
+                                    "be long-term"
+                                  : " balances forces in the middle of a step; use another scheme of "
+                                    "dynamics")};
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
 Result<BuiltParts> build_parts(Description& said, const WorldOptions& options) {
   Builder& builder = said.builder;
   BuiltParts built;
@@ -233,6 +255,7 @@ Result<BuiltParts> build_parts(Description& said, const WorldOptions& options) {
   }
   if (options.consistent_mass && options.scheme->has_inertia()) builder.use_consistent_mass();
   if (auto r = builder.build_solids(); !r) return r.failure();
+  if (auto r = check_memory(builder, *options.scheme); !r) return r.failure();
   built.instances.resize(said.sources.size());
   for (const Index e : said.order) {
     builder.set_owner(e);

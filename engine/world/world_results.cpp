@@ -132,7 +132,11 @@ BodyFields World::fields(BodyId body) const {
   }
   std::vector<double> nodal(parts.rest.size(), std::nan(""));
   for (const Index e : w.said.order) w.instances[at(e)]->node_multipliers({w.system(), w.state}, nodal);
-  BodyFields fields = recover_fields({w.said.builder.body(body), parts, w.state.x, multipliers, nodal});
+  std::vector<std::span<const double>> memory(parts.stencil_pools.size());
+  for (const auto& stencils : w.system().facets().remembering)
+    memory[at(stencils.pool)] = stencils.in(w.pool_memory());
+  BodyFields fields =
+      recover_fields({w.said.builder.body(body), parts, w.state.x, multipliers, nodal, memory});
   add_surface_fields(w.instances, {w.system(), w.state}, w.said.builder.body(body), fields);
   return fields;
 }

@@ -33,6 +33,18 @@ void describe(Visitor& io, OgdenTerm& t) {
   io.number({"alpha", "", "exponent"}, t.alpha, d.alpha);
 }
 
+ISOCHOR_WORDS(StaticTime, ISOCHOR_WORD(StaticTime, long_term), ISOCHOR_WORD(StaticTime, seconds));
+
+void describe(Visitor& io, PronyTerm& t) {
+  const PronyTerm d;
+  io.about("prony_term",
+           "A term of the shear relaxation modulus G0 (1 - sum of ratio (1 - exp(-t/time))), see "
+           "[viscoelastic](materials/viscoelastic.md).");
+  io.number(Key("ratio", "", "share of the instantaneous shear modulus that relaxes").above(0).must(),
+            t.ratio, d.ratio);
+  io.number(Key("time", "s", "of relaxation").above(0).must(), t.time, d.time);
+}
+
 void describe(Visitor& io, SceneFibers& f) {
   const SceneFibers d;
   io.about("fibers",
@@ -125,6 +137,11 @@ void describe(Visitor& io, MaterialDef& m) {
   io.word({"bulk_choice", "", "what Poisson's ratio means for a [neo_hookean](materials/neo_hookean.md) law"},
           m.constants.bulk_choice, d.constants.bulk_choice);
   describe_own(io, m.own);
+  io.list(
+      {"prony", "", "terms of a [Prony series](materials/viscoelastic.md): an isochoric law then relaxes"},
+      m.prony);
+  io.word({"static_time", "", "what the time of a statics is to `prony`: everything has relaxed, or seconds"},
+          m.static_time, d.static_time);
   io.list({"fibers", "", "families of [fibers](materials/fibers.md)"}, m.fibers);
   io.optional_object({"compression_penalty", "", "against single crushed elements"}, m.compression_penalty,
                      m.compression_penalty.modulus != 0);

@@ -2,6 +2,7 @@
 #include "contract/registry.h"
 #include "engine/elements/element_guard.h"
 #include "engine/elements/material_model.h"
+#include "isochor/viscoelastic.h"
 
 namespace test {
 
@@ -583,6 +584,99 @@ void add_isochoric_fibers(std::vector<MaterialCase>& out) {
   }
 }
 
+using Matrix9 = std::array<HyperDual, 9>;
+
+Matrix9 product(const Matrix9& A, const Matrix9& B) {
+  Matrix9 C;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j)
+      C[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
+  }
+  return C;
+}
+Matrix9 sum(const Matrix9& A, double b, const Matrix9& B) {
+  Matrix9 C;
+  for (std::size_t i = 0; i < 9; ++i) C[i] = A[i] + b * B[i];
+  return C;
+}
+Matrix9 inverse(const Matrix9& A) {
+  Matrix9 C;
+  const HyperDual det = determinant(A);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t a = (j + 1) % 3, b = (j + 2) % 3, c = (i + 1) % 3, d = (i + 2) % 3;
+      C[3 * i + j] = (A[3 * a + c] * A[3 * b + d] - A[3 * a + d] * A[3 * b + c]) / det;
+    }
+  }
+  return C;
+}
+
+// By square roots until the argument is next to 1 (Denman & Beavers), and the series there.
+Matrix9 logarithm(Matrix9 A) {
+  Matrix9 one;
+  for (std::size_t i = 0; i < 9; i += 4) one[i] = HyperDual() + 1.0;
+  constexpr int roots = 6;
+  for (int k = 0; k < roots; ++k) {
+    Matrix9 Y = A, Z = one;
+    for (int i = 0; i < 14; ++i) {
+      const Matrix9 y = sum(Y, 1, inverse(Z)), z = sum(Z, 1, inverse(Y));
+      for (std::size_t e = 0; e < 9; ++e) Y[e] = 0.5 * y[e], Z[e] = 0.5 * z[e];
+    }
+    A = Y;
+  }
+  const Matrix9 x = product(sum(A, -1, one), inverse(sum(A, 1, one))), square = product(x, x);
+  Matrix9 power = x, log = x;
+  for (int n = 3; n < 13; n += 2) {
+    power = product(power, square);
+    log = sum(log, 1.0 / n, power);
+  }
+  for (HyperDual& v : log) v = 2.0 * (1 << roots) * v;
+  return log;
+}
+
+// What stays of a material with memory, and the spring of a branch.
+void add_viscoelastic(std::vector<MaterialCase>& out) {
+  const isochor::MaterialPtr model = made(
+      isochor::with_prony_series(made(isochor::isochoric_neo_hookean(constants())), {{0.3, 1}, {0.2, 5}}));
+  const auto strain = [](const Gradient9& F) {
+    return trace_C(F) / exp(2.0 / 3 * log(determinant(F))) - 3.0;
+  };
+  MaterialCase c;
+  c.covers = {"materials/viscoelastic"};
+  c.name = "isochoric_neo_hookean with memory, what stays";
+  c.material = model->distortional();
+  c.energy = [=](const Gradient9& F) { return 0.25 * kMu * strain(F); };
+  out.push_back(c);
+  c.name = "isochoric_neo_hookean with memory, one field";
+  c.material = model->complete().value();
+  const double kappa = 1 / model->inverse_bulk();
+  c.energy = [=](const Gradient9& F) {
+    const HyperDual d = determinant(F) - 1.0;
+    return 0.25 * kMu * strain(F) + 0.5 * kappa * d * d;
+  };
+  c.scale = 10;
+  out.push_back(c);
+  c.scale = 1;
+  c.name = "logarithmic spring";
+  c.material = model->memory()->branches.front().spring;
+  c.energy = [](const Gradient9& F) {
+    Matrix9 C;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j)
+        C[3 * i + j] = F[i] * F[j] + F[3 + i] * F[3 + j] + F[6 + i] * F[6 + j];
+    }
+    const Matrix9 e = logarithm(C);  // twice the strain
+    const HyperDual mean = (1.0 / 3) * (e[0] + e[4] + e[8]);
+    HyperDual square;
+    for (std::size_t i = 0; i < 9; ++i) {
+      const HyperDual d = i % 4 == 0 ? e[i] - mean : e[i];
+      square = square + d * d;
+    }
+    return 0.25 * 0.3 * kMu * square;
+  };
+  out.push_back(c);
+}
+
 // On a base with a barrier, and on one that lives through inversion.
 void add_compression_penalty(std::vector<MaterialCase>& out) {
   const auto penalty = [](const Gradient9& F) {
@@ -710,6 +804,7 @@ std::vector<MaterialCase> material_cases() {
   add_fibers(out);
   add_isochoric_fibers(out);
   add_compression_penalty(out);
+  add_viscoelastic(out);
   add_poisson_field(out);
   add_element_guard(out);
   return out;

@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "contract/registry.h"
+#include "isochor/viscoelastic.h"
 #include "support/meshes.h"
 
 namespace test {
@@ -318,6 +319,16 @@ void add_fields(std::vector<SceneCase>& out) {
     c.name = name + ", field of Poisson's ratio";
     c.covers = {"materials/poisson_field"};
     c.materials = {{"", isochor::with_stiffness_field(field, factor).value(), 1000}};
+    out.push_back(c);
+    // Springs beside a solid.
+    isochor::ElasticConstants isochoric;
+    isochoric.young = 2.6;
+    isochoric.poisson = 0.4;
+    auto instant = isochor::isochoric_neo_hookean(isochoric).value();
+    c.name = name + ", memory";
+    c.covers = {"materials/viscoelastic"};
+    c.numbered_cells = false;
+    c.materials = {{"", isochor::with_prony_series(instant, {{0.3, 0.05}, {0.2, 2}}).value(), 1000}};
     out.push_back(c);
   }
 }

@@ -1,5 +1,5 @@
 // Elementary functions of lanes against those of the standard library.
-#include "materials/lane_functions.h"
+#include "engine/math/lane_functions.h"
 
 #include <random>
 

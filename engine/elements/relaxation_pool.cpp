@@ -1,0 +1,242 @@
+#include "engine/elements/relaxation_pool.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/elements/contraction.h"
+#include "engine/math/lane_functions.h"
+
+namespace isochor {
+
+struct RelaxationPool::Point {
+  Index stencil = 0;
+  int point = 0;
+};
+
+// How much of a logarithmic strain is left where an increment begins and where it ends.
+struct RelaxationPool::Flow {
+  double before = 1, after = 1;
+};
+
+// Points on their way: F_v^-1 after the first flow, and F_e.
+struct RelaxationPool::Batch {
+  Lanes viscous[9], elastic[9];
+};
+
+namespace {
+
+// C = A B, row-major.
+void multiply(const Lanes A[9], const Lanes B[9], Lanes C[9]) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j)
+      C[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
+  }
+}
+
+// V diag(d) V^T, row-major.
+void in_frame(const Lanes V[9], const Lanes d[3], Lanes C[9]) {
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      C[3 * i + j] = V[3 * i] * d[0] * V[3 * j] + V[3 * i + 1] * d[1] * V[3 * j + 1] +
+                     V[3 * i + 2] * d[2] * V[3 * j + 2];
+    }
+  }
+}
+
+}  // namespace
+
+RelaxationPool::RelaxationPool(std::string name, std::shared_ptr<const SolidData> data,
+                               std::shared_ptr<const Material> spring, double time)
+    : name_(std::move(name)),
+      data_(std::move(data)),
+      geometry_(name_, data_, nullptr, VolumeStrain::linear),
+      spring_(std::move(spring)),
+      time_(time) {
+  nodes_ = data_->nodes;
+  finish_topology();
+}
+
+int RelaxationPool::memory() const {
+  return kNumbers * data_->points * static_cast<int>(nodes_.count());
+}
+
+RelaxationPool::Flow RelaxationPool::flow(const StencilIncrement& increment) const {
+  // Where nothing has inertia time is that of the loads.
+  const double dt = increment.h > 0 ? increment.h : increment.t1 - increment.t0;
+  if (!(dt > 0)) return {};
+  const double x = dt / time_;
+  return {x / std::expm1(x), -std::expm1(-x) / x};
+}
+
+// Both steps up to the end of the stretch.
+void RelaxationPool::stretch(const StencilRequest& request, const Flow& flow, const Point* points, int count,
+                             Batch& batch) const {
+  Lanes F[9] = {}, kept[9] = {}, strain[6] = {};
+  for (int l = 0; l < kLanes; ++l) {
+    const Point& p = points[std::min(l, count - 1)];
+    double at_point[9], unused = 0;
+    geometry_.deformation_gradient(p.stencil, p.point, request.x, request.rest, at_point, unused);
+    for (int i = 0; i < 9; ++i) F[i][l] = at_point[i];
+    for (int i = 0; i < 9; i += 4) kept[i][l] = 1;
+    if (request.memory.empty()) continue;
+    const double* m = request.memory.data() + kNumbers * (at(p.stencil * data_->points) + at(p.point));
+    for (int i = 0; i < 9; ++i) kept[i][l] += m[i];
+    for (int i = 0; i < 6; ++i) strain[i][l] = m[9 + i];
+  }
+  if (flow.before < 1) {
+    Lanes values[3], Q[9], shrunk[9];
+    symmetric_eigen3(strain, values, Q);
+    for (Lanes& v : values) v = exp((flow.before - 1) * v);
+    in_frame(Q, values, shrunk);
+    multiply(kept, shrunk, batch.viscous);
+  } else {
+    std::copy_n(kept, 9, batch.viscous);
+  }
+  multiply(F, batch.viscous, batch.elastic);
+}
+
+void RelaxationPool::evaluate(const StencilRequest& request, const StencilSlots& slots) const {
+  for (Index s = request.begin; s < request.end; ++s) {
+    const std::size_t n = nodes_[s].size();
+    slots.energy[at(s)] = 0;
+    if (request.want == Want::value) continue;
+    std::fill_n(slots.gradient.begin() + nodes_.offset[at(s)], n, Vec3{});
+    if (request.want == Want::hessian)
+      std::fill_n(slots.hessian.begin() + hessian_offset()[at(s)], n * (n + 1) / 2, Mat3{});
+  }
+  const Flow f = flow(request.increment);
+  Point points[kLanes];
+  int count = 0;
+  for (Index s = request.begin; s < request.end; ++s) {
+    for (int q = 0; q < data_->points; ++q) {
+      points[count++] = {s, q};
+      if (count < kLanes) continue;
+      flush(request, slots, f, points, count);
+      count = 0;
+    }
+  }
+  if (count > 0) flush(request, slots, f, points, count);
+}
+
+// The springs at F_e: energy and its derivatives in F_e.
+void RelaxationPool::respond(const StencilRequest& request, const Point* points, int count,
+                             const Batch& batch, ResponseBatch& response) const {
+  PointBatch at_points;
+  for (int i = 0; i < 9; ++i) store(batch.elastic[i], at_points.F[i]);
+  for (int l = 0; l < kLanes; ++l) {
+    at_points.element[l] = points[std::min(l, count - 1)].stencil;
+    at_points.J_before[l] = 1;
+  }
+  const bool definite = request.want == Want::hessian && request.definiteness != Definiteness::exact;
+  spring_->evaluate(definite ? Want::gradient : request.want, at_points, response);
+  if (!definite) return;
+  Svd3 svd;
+  Spectrum spectrum;
+  Lanes A[45];
+  svd3(batch.elastic, svd);
+  spring_->spectrum(at_points, svd, spectrum);
+  make_definite(request.definiteness, spectrum);
+  assemble(svd, spectrum, A);
+  for (int i = 0; i < 45; ++i) store(A[i], response.A[i]);
+}
+
+void RelaxationPool::stress(Index stencil, int point, std::span<const Vec3> x, std::span<const Vec3> rest,
+                            std::span<const double> memory, double P[9]) const {
+  StencilRequest request;
+  request.want = Want::gradient;
+  request.x = x;
+  request.rest = rest;
+  request.memory = memory;
+  const Point p{stencil, point};
+  Batch batch;
+  ResponseBatch response;
+  stretch(request, {}, &p, 1, batch);
+  respond(request, &p, 1, batch, response);
+  // dF_e = dF F_v^-1.
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      P[3 * i + j] = 0;
+      for (int k = 0; k < 3; ++k) P[3 * i + j] += response.P[3 * i + k][0] * batch.viscous[3 * j + k][0];
+    }
+  }
+}
+
+void RelaxationPool::flush(const StencilRequest& request, const StencilSlots& slots, const Flow& flow,
+                           const Point* points, int count) const {
+  Batch batch;
+  stretch(request, flow, points, count, batch);
+  ResponseBatch response;
+  respond(request, points, count, batch, response);
+  for (int l = 0; l < count; ++l) {
+    const Index s = points[l].stencil;
+    const auto point = at(s * data_->points) + at(points[l].point);
+    const double w = flow.after * data_->weight[point];
+    slots.energy[at(s)] += w * response.psi[l];
+    if (request.want == Want::value) continue;
+    // dF_e = dF F_v^-1: in place of B the nodes have F_v^-T B.
+    constexpr std::size_t most = 64;
+    const std::size_t n = nodes_[s].size();
+    const auto first = at(nodes_.offset[at(s)]);
+    const Vec3* B = data_->gradient.data() + static_cast<std::size_t>(data_->points) * first +
+                    static_cast<std::size_t>(points[l].point) * n;
+    double P[9], A[45];
+    for (int i = 0; i < 9; ++i) P[i] = response.P[i][l];
+    for (int i = 0; i < 45 && request.want == Want::hessian; ++i) A[i] = response.A[i][l];
+    Vec3 few[most];
+    std::vector<Vec3> many(n > most ? n : 0);
+    Vec3* turned = n > most ? many.data() : few;
+    for (std::size_t a = 0; a < n; ++a) {
+      for (int j = 0; j < 3; ++j) {
+        turned[a][j] = batch.viscous[j][l] * B[a].x + batch.viscous[3 + j][l] * B[a].y +
+                       batch.viscous[6 + j][l] * B[a].z;
+      }
+    }
+    contract_gradient(P, w, turned, n, slots.gradient.data() + first);
+    if (request.want == Want::hessian)
+      contract_hessian(A, w, turned, n, slots.hessian.data() + hessian_offset()[at(s)]);
+  }
+}
+
+void RelaxationPool::accept(const StencilRequest& request, std::span<double> memory) const {
+  const Flow f = flow(request.increment);
+  Point points[kLanes];
+  int count = 0;
+  for (Index s = 0; s < nodes_.count(); ++s) {
+    for (int q = 0; q < data_->points; ++q) {
+      points[count++] = {s, q};
+      if (count < kLanes) continue;
+      keep(request, f, points, count, memory);
+      count = 0;
+    }
+  }
+  if (count > 0) keep(request, f, points, count, memory);
+}
+
+// The last flow, and what the next increment has to know.
+void RelaxationPool::keep(const StencilRequest& request, const Flow& flow, const Point* points, int count,
+                          std::span<double> memory) const {
+  Batch batch;
+  stretch(request, flow, points, count, batch);
+  Svd3 svd;
+  svd3(batch.elastic, svd);
+  Lanes e[3], grown[3], left[3], shrink[9], viscous[9], strain[9];
+  for (int i = 0; i < 3; ++i) e[i] = log(svd.sigma[i]);
+  const Lanes mean = (e[0] + e[1] + e[2]) * (1.0 / 3);
+  for (int i = 0; i < 3; ++i) {
+    e[i] -= mean;
+    left[i] = flow.after * e[i];
+    grown[i] = exp(left[i] - e[i]);
+  }
+  in_frame(svd.V, grown, shrink);
+  multiply(batch.viscous, shrink, viscous);
+  in_frame(svd.V, left, strain);
+  constexpr int packed_from[6] = {0, 4, 8, 1, 2, 5};
+  for (int l = 0; l < count; ++l) {
+    double* m = memory.data() + kNumbers * (at(points[l].stencil * data_->points) + at(points[l].point));
+    if (!(svd.sigma[2][l] > 0)) continue;  // no state that a step is accepted with
+    for (int i = 0; i < 9; ++i) m[i] = viscous[i][l] - (i % 4 == 0 ? 1 : 0);
+    for (int i = 0; i < 6; ++i) m[9 + i] = strain[packed_from[i]][l];
+  }
+}
+
+}  // namespace isochor

@@ -1,0 +1,232 @@
+// A Prony series beside an isochoric material: what of it stays for good, and the springs of the Maxwell
+// elements, whose flow is engine/elements/relaxation_pool.h.
+#include "isochor/viscoelastic.h"
+
+#include <cmath>
+#include <limits>
+
+#include "engine/base/text.h"
+#include "engine/elements/material_model.h"
+#include "engine/math/lane_functions.h"
+
+namespace isochor {
+
+namespace {
+
+// mu sum_i e_i^2 with e the deviator of the logarithms of the principal stretches (Hencky 1928, without its
+// volume part). No value where an element is inverted.
+struct LogarithmicSpring {
+  double mu = 0;
+};
+
+struct SpringLanes {
+  Lanes psi{}, d[3]{};
+  Spectrum second{};
+};
+
+SpringLanes respond(const LogarithmicSpring& spring, Want want, const Lanes s[3]) {
+  const double mu2 = 2 * spring.mu;
+  SpringLanes r;
+  Lanes e[3], inverse[3], mean{};
+  for (int i = 0; i < 3; ++i) {
+    e[i] = log(s[i]);
+    inverse[i] = 1 / s[i];
+    mean += e[i] * (1.0 / 3);
+  }
+  for (int i = 0; i < 3; ++i) {
+    e[i] -= mean;
+    r.psi += spring.mu * e[i] * e[i];
+    r.d[i] = mu2 * e[i] * inverse[i];
+  }
+  for (int i = 0; i < 3 && want == Want::hessian; ++i) {
+    const int a = (i + 1) % 3, b = (i + 2) % 3, pair = 2 + a + b;
+    const int j = i == 0 ? 1 : 0, k = 3 - i - j;  // s_k <= s_j: the stretches come in order
+    const Lanes jk = inverse[j] * inverse[k], x = (s[j] - s[k]) * inverse[k];
+    const Lanes slope = x > 0 ? log1p(x) / x : broadcast(1);  // of the logarithm between the two, times s_k
+    r.second.scaling[i] = mu2 * (2.0 / 3 - e[i]) * inverse[i] * inverse[i];
+    r.second.scaling[pair] = -mu2 / 3 * jk;
+    r.second.twist[i] = (r.d[j] + r.d[k]) / (s[j] + s[k]);
+    r.second.flip[i] = mu2 * (slope - e[k]) * jk;
+  }
+  constexpr double least_stretch = 1e-30;  // powers of smaller ones leave the range of numbers
+  const LaneMask none = (s[2] <= least_stretch) | ~(magnitude(r.psi) <= std::numeric_limits<double>::max());
+  if (!any(none)) return r;
+  r.psi = none ? broadcast(std::numeric_limits<double>::infinity()) : r.psi;
+  for (int i = 0; i < 3; ++i) {
+    for (Lanes* v :
+         {&r.d[i], &r.second.twist[i], &r.second.flip[i], &r.second.scaling[i], &r.second.scaling[3 + i]}) {
+      *v = none ? Lanes{} : *v;
+    }
+  }
+  return r;
+}
+
+class SpringMaterial final : public Material {
+ public:
+  explicit SpringMaterial(LogarithmicSpring spring) : spring_(spring) {}
+  std::string_view name() const override { return "logarithmic spring"; }
+  void describe(Fingerprint& f) const override { f.add(name(), spring_); }
+
+  void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
+    Lanes F[9];
+    for (int i = 0; i < 9; ++i) F[i] = load(points.F[i]);
+    Svd3 svd;
+    svd3(F, svd);
+    const SpringLanes e = respond(spring_, want, svd.sigma);
+    store(e.psi, r.psi);
+    if (want == Want::value) return;
+    for (int i = 0; i < 3; ++i) {
+      const Lanes u[3] = {svd.U[3 * i] * e.d[0], svd.U[3 * i + 1] * e.d[1], svd.U[3 * i + 2] * e.d[2]};
+      for (int j = 0; j < 3; ++j) {
+        store(u[0] * svd.V[3 * j] + u[1] * svd.V[3 * j + 1] + u[2] * svd.V[3 * j + 2], r.P[3 * i + j]);
+      }
+    }
+    if (want == Want::gradient) return;
+    Lanes A[45];
+    assemble(svd, e.second, A);
+    for (int i = 0; i < 45; ++i) store(A[i], r.A[i]);
+  }
+  void spectrum(const PointBatch&, const Svd3& svd, Spectrum& out) const override {
+    out = respond(spring_, Want::hessian, svd.sigma).second;
+  }
+
+ private:
+  LogarithmicSpring spring_;
+};
+
+// `all` less a share of `part`, which may be the same.
+class RemainderMaterial final : public Material {
+ public:
+  RemainderMaterial(std::shared_ptr<const Material> all, std::shared_ptr<const Material> part, double share)
+      : all_(std::move(all)), part_(std::move(part)), share_(share) {}
+  std::string_view name() const override { return all_->name(); }
+  void describe(Fingerprint& f) const override { f.add(all_, part_, share_); }
+
+  void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
+    all_->evaluate(want, points, r);
+    if (all_ == part_) {
+      const double rest = 1 - share_;
+      store(rest * load(r.psi), r.psi);
+      for (int i = 0; i < 9 && want != Want::value; ++i) store(rest * load(r.P[i]), r.P[i]);
+      for (int i = 0; i < 45 && want == Want::hessian; ++i) store(rest * load(r.A[i]), r.A[i]);
+      return;
+    }
+    ResponseBatch p;
+    part_->evaluate(want, points, p);
+    // Where neither has a value there is no difference of two infinities.
+    const Lanes psi = load(r.psi);
+    const LaneMask none = ~(magnitude(psi) <= std::numeric_limits<double>::max());
+    store(none ? psi : psi - share_ * load(p.psi), r.psi);
+    for (int i = 0; i < 9 && want != Want::value; ++i) store(load(r.P[i]) - share_ * load(p.P[i]), r.P[i]);
+    for (int i = 0; i < 45 && want == Want::hessian; ++i) store(load(r.A[i]) - share_ * load(p.A[i]), r.A[i]);
+  }
+  void spectrum(const PointBatch& points, const Svd3& svd, Spectrum& out) const override {
+    all_->spectrum(points, svd, out);
+    Spectrum p;
+    part_->spectrum(points, svd, p);
+    for (int i = 0; i < 3; ++i) {
+      out.twist[i] -= share_ * p.twist[i];
+      out.flip[i] -= share_ * p.flip[i];
+      out.scaling[i] -= share_ * p.scaling[i];
+      out.scaling[3 + i] -= share_ * p.scaling[3 + i];
+    }
+  }
+
+ private:
+  std::shared_ptr<const Material> all_, part_;
+  double share_;
+};
+
+class PronyModel final : public MaterialModel {
+ public:
+  PronyModel(MaterialPtr base, const std::vector<PronyTerm>& terms, StaticTime statics)
+      : base_(std::move(base)), name_(std::string(base_->name()).append(" with memory")) {
+    memory_.in_statics = statics == StaticTime::seconds;
+    for (const PronyTerm& term : terms) {
+      share_ += term.ratio;
+      memory_.branches.push_back(
+          {std::make_shared<SpringMaterial>(LogarithmicSpring{term.ratio * base_->shear_modulus()}),
+           term.time});
+    }
+  }
+  std::string_view name() const override { return name_; }
+  std::shared_ptr<const Material> distortional() const override {
+    const auto all = base_->distortional();
+    return std::make_shared<RemainderMaterial>(all, all, share_);
+  }
+  Result<std::shared_ptr<const Material>> complete() const override {
+    auto all = base_->complete();
+    if (!all) return all;
+    return std::shared_ptr<const Material>(
+        std::make_shared<RemainderMaterial>(all.value(), base_->distortional(), share_));
+  }
+  double shear_modulus() const override { return base_->shear_modulus(); }
+  double inverse_bulk() const override { return base_->inverse_bulk(); }
+  double poisson() const override { return base_->poisson(); }
+  double young() const override { return base_->young(); }
+  bool defined_inverted() const override { return false; }
+  VolumeStrain volume_strain() const override { return base_->volume_strain(); }
+  std::vector<std::string> warnings() const override { return base_->warnings(); }
+  bool has_separate_volume() const override { return base_->has_separate_volume(); }
+  const MaterialMemory* memory() const override { return &memory_; }
+
+ private:
+  MaterialPtr base_;
+  std::string name_;
+  double share_ = 0;
+  MaterialMemory memory_;
+};
+
+// Whether a change of size alone leaves the energy where it is.
+bool is_isochoric(const Material& energy) {
+  PointBatch points{};
+  ResponseBatch r;
+  double size = 0;
+  for (int l = 0; l < kLanes; ++l) {
+    for (int i = 0; i < 9; i += 4) points.F[i][l] = 1 + 0.1 * (l % 2 == 0 ? 1 : -1);
+    points.F[1][l] = l < 2 ? 0 : 0.3;  // and one that is sheared, for the size of stresses
+    points.J_before[l] = 1;
+  }
+  energy.evaluate(Want::gradient, points, r);
+  for (auto& p : r.P) size = std::max(size, std::abs(p[2]));
+  double stray = 0;
+  for (int l = 0; l < 2; ++l)
+    for (auto& p : r.P) stray = std::max(stray, std::abs(p[l]));
+  return stray <= 1e-10 * size;
+}
+
+}  // namespace
+
+Result<MaterialPtr> with_prony_series(MaterialPtr base, const std::vector<PronyTerm>& terms,
+                                      StaticTime statics) {
+  const std::string who = "viscoelastic: ";
+  if (!base) return Error{who + "the material is empty"};
+  if (base->memory())
+    return Error{who + base->name().data() + " has a memory already; give all terms at once"};
+  if (terms.empty()) return Error{who + "there are no terms; give at least one pair of ratio and time"};
+  double sum = 0;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const std::string term = who + "terms[" + std::to_string(i) + "].";
+    if (!(terms[i].ratio > 0) || !std::isfinite(terms[i].ratio))
+      return Error{term + "ratio = " + number(terms[i].ratio) +
+                   "; it must be positive, a share of the instantaneous shear modulus"};
+    if (!(terms[i].time > 0) || !std::isfinite(terms[i].time))
+      return Error{term + "time = " + number(terms[i].time) + " s; relaxation times must be positive"};
+    sum += terms[i].ratio;
+  }
+  if (!(sum < 1))
+    return Error{who + "the ratios sum to " + number(sum) +
+                 "; together they must stay below 1, or nothing is left to carry a load that lasts"};
+  if (base->field_cells() > 0)
+    return Error{who +
+                 "the material has a field; a field of stiffness goes around the series, and one of "
+                 "Poisson's ratio does not go with it"};
+  if (!is_isochoric(*base->distortional())) {
+    return Error{who + "the energy of " + std::string(base->name()) +
+                 " depends on the volume beside its volume part, or on fibers; take an isochoric law "
+                 "(isochoric_neo_hookean, isochoric_ogden, ...), and put fibers around the series"};
+  }
+  return MaterialPtr(std::make_shared<PronyModel>(std::move(base), terms, statics));
+}
+
+}  // namespace isochor
