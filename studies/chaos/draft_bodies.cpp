@@ -166,6 +166,19 @@ MaterialDef draw_material(ChaosRandom& random, const ChaosDraft& draft, DraftBod
   return m;
 }
 
+// By a sequence of its own, as laws of invariants.
+void draw_memory(const ChaosDraft& draft, const std::string& region, MaterialDef& m) {
+  ChaosRandom random = draft.random("memory " + std::to_string(draft.bodies.size()) + " " + region);
+  const bool isochoric =
+      m.law == MaterialLaw::isochoric_neo_hookean ||
+      (m.law >= MaterialLaw::isochoric_mooney_rivlin && m.law <= MaterialLaw::isochoric_holmes_mow);
+  if (!isochoric || m.poisson_field.given() || !random.chance(0.4)) return;
+  const int terms = random.whole(1, 3);
+  for (int i = 0; i < terms; ++i)
+    m.prony.push_back({random.between(0.01, 0.9) / terms, draft.duration * random.decades(-3, 3)});
+  if (random.chance(0.5)) m.static_time = StaticTime::seconds;
+}
+
 void draw_materials(ChaosRandom& random, const ChaosDraft& draft, SceneBody& def, DraftBody& body) {
   const bool same = random.chance(0.7);
   const double poisson = random.chance(0.45) ? 0.5 : kPoissons[random.whole(0, 6)];
@@ -188,6 +201,7 @@ void draw_materials(ChaosRandom& random, const ChaosDraft& draft, SceneBody& def
       m.constants.poisson = 0;
       own = 0.4999;
     }
+    draw_memory(draft, region, m);
     body.incompressible = body.incompressible && own == 0.5;
     def.materials.push_back(std::move(m));
   }

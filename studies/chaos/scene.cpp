@@ -57,6 +57,7 @@ void add_body_parts(const SceneDef& s, std::set<std::string>& parts) {
     for (const MaterialDef& m : body.materials) {
       parts.insert("law " + word(kLaws, m.law));
       if (!m.fibers.empty()) parts.insert("fibers");
+      if (!m.prony.empty()) parts.insert("memory");
       if (m.compression_penalty.modulus > 0) parts.insert("compression penalty");
       if (m.stiffness_field.given() || m.poisson_field.given()) parts.insert("fields of constants");
     }

@@ -441,6 +441,62 @@ TEST_CASE("an overlap at the start is pushed apart little by little") {
 
 namespace {
 
+// Blocks that are close at rest and far apart, side by side, at the end.
+World parted_blocks() {
+  World world = test::make_world(test::static_options());
+  const auto material = test::neo_hookean(1e5, 0.45);
+  const BodyId a =
+      test::add_body(world, test::block({0, 0, 0}, {1, 1, 1}, {3, 3, 3}), Element::tet4, material, 1000, "a");
+  const BodyId b = test::add_body(world, test::block({0.1, 0.2, 1.001}, {0.8, 0.9, 2}, {3, 3, 3}),
+                                  Element::tet4, material, 1000, "b");
+  test::hold(world, a, {"z0"});
+  // Up, aside and down.
+  const std::array<Curve, 3> way = {Curve{{{0, 0}, {0.2, 0}, {0.6, 3}, {1, 3}}}, Curve::constant(0),
+                                    Curve{{{0, 0}, {0.2, 1}, {0.6, 1}, {0.8, -0.9}, {1, -0.9}}}};
+  for (int k = 0; k < 3; ++k) {
+    DirichletDef carried;
+    carried.name = std::string("carried along ") + "xyz"[k];
+    carried.where.body = b;
+    carried.where.surfaces = {"z1"};
+    carried.directions = {{k == 0 ? 1.0 : 0, k == 1 ? 1.0 : 0, k == 2 ? 1.0 : 0}};
+    carried.displacement = carried.directions[0];
+    carried.amount = way[static_cast<std::size_t>(k)];
+    test::value(world.add(dirichlet(carried)));
+  }
+  SurfaceContactDef def;
+  def.body = a;
+  def.against = b;
+  test::value(world.add(surface_contact(def)));
+  return world;
+}
+
+}  // namespace
+
+TEST_CASE("a state in which nothing is close to anything is kept as it is") {
+  World world = parted_blocks();
+  for (int k = 0; k < 4; ++k) test::must_advance(world, 0.2);
+  const double gap = gauge_of(world, "smallest_gap"), rows = world.constitutive_residual();
+  const auto saved = world.save();
+  CHECK(rows < 1e-9);
+  SECTION("in another world") {
+    World other = parted_blocks();
+    test::value(other.load(saved));
+    CHECK(gauge_of(other, "smallest_gap") == gap);
+    CHECK(other.constitutive_residual() == rows);
+    test::must_advance(other, 0.2);
+    test::must_advance(world, 0.2);
+    CHECK(other.state_hash() == world.state_hash());
+  }
+  SECTION("after a step that is given up") {
+    world.stop_when([] { return true; });
+    CHECK(world.step(0.2).status == StepStatus::cancelled);
+    CHECK(gauge_of(world, "smallest_gap") == gap);
+    CHECK(world.constitutive_residual() == rows);
+  }
+}
+
+namespace {
+
 // Coordinate i of n + 1: even steps over [0, inner], then growing ones up to `outer`.
 double graded(double s, double inner, double outer, double part) {
   if (s <= part) return inner * s / part;

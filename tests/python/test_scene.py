@@ -15,6 +15,7 @@ import pytest
 
 import isochor as iso
 from conftest import SOURCE, sentence
+from isochor.keys import effect_types
 
 SHORT = {"analysis.steps": 2, "bodies[0].element": "tet4"}
 
@@ -193,3 +194,55 @@ def test_control_c_stops_a_run():
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=300)
     assert done.stdout == "interrupted\n", done.stderr
+
+
+@pytest.mark.parametrize("name", ["thick_tube", "thick_sphere_volume", "incline", "two_chambers"])
+def test_a_world_of_a_scene_goes_where_the_scene_goes(name):
+    scene = iso.Scene.load(name)
+    world = scene.world()
+    for _ in range(scene.steps):
+        if scene.path_step:
+            world.follow(scene.path_step)
+        else:
+            world.advance(scene.step_length)
+    assert world.state_hash == scene.run(page=False).state_hash
+
+
+def test_every_scene_of_the_library_is_a_world_with_its_names():
+    for name in iso.library():
+        scene = iso.Scene.load(name)
+        if scene.to_dict()["bodies"][0]["mesh"].get("file", "").endswith("large.msh"):
+            continue
+        said, world = scene.to_dict(), scene.world()
+        assert [b.name for b in world.bodies] == [b.get("name", "body") for b in said["bodies"]]
+        named = {keys["name"] for name in effect_types().values() for keys in said.get(name, [])}
+        assert named <= {effect.name for effect in world.effects}
+        assert all(world[effect.name] is effect for effect in world.effects)
+
+
+def test_a_world_of_a_scene_lives():
+    world = tube().world(threads=1)
+    chamber = next(e for e in world.effects if e.kind == "cavity")
+    chamber.amount = 2000.0
+    world.advance(0.5)
+    other = pickle.loads(pickle.dumps(world))
+    assert other.state_hash == world.state_hash and other[chamber.name].amount == 2000.0
+    twin = world.clone()
+    for one in (world, other, twin):
+        one.advance(0.5)
+    assert other.state_hash == world.state_hash == twin.state_hash
+    # Changed, it is a world like others.
+    body = world.bodies[0]
+    body.set_material(iso.neo_hookean(young=2e5, poisson=0.5))
+    world.add(iso.damping(body, viscosity=1.0)) if hasattr(iso, "damping") else None
+    world.advance(0.1)
+    changed = pickle.loads(pickle.dumps(world))
+    assert changed.state_hash == world.state_hash
+    world.remove(chamber)
+    world.advance(0.1)
+    with pytest.raises(KeyError):
+        world[chamber.name]
+    batch = iso.WorldBatch(tube().world(), 2)
+    batch.advance(0.1)
+    with pytest.raises(iso.Error, match="threads = -1"):
+        tube().world(threads=-1)

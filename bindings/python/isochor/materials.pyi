@@ -17,6 +17,7 @@ class Material:
     def with_keys(self, **changes: Any) -> Material: ...
 
 _OgdenTerm = TypedDict("_OgdenTerm", {"mu": float, "alpha": float}, total=False)
+_PronyTerm = TypedDict("_PronyTerm", {"ratio": float, "time": float}, total=False)
 _Fibers = TypedDict("_Fibers", {"direction": ArrayLike, "directions": ArrayLike, "field": str, "law": Literal["exponential", "toe"], "k1": float, "k2": float, "dispersion": float, "exponent": float, "isochoric": bool, "straight_modulus": float, "straight_stretch": float}, total=False)
 _CompressionPenalty = TypedDict("_CompressionPenalty", {"modulus": float, "beta": float}, total=False)
 _CellField = TypedDict("_CellField", {"values": ArrayLike, "file": str}, total=False)
@@ -34,6 +35,8 @@ def neo_hookean(
     bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -59,6 +62,10 @@ def neo_hookean(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -81,6 +88,8 @@ def neo_hookean_ogden(
     bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -106,6 +115,10 @@ def neo_hookean_ogden(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -128,6 +141,8 @@ def stable_neo_hookean(
     bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -153,6 +168,10 @@ def stable_neo_hookean(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -175,6 +194,8 @@ def stable_neo_hookean_barrier(
     bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -200,6 +221,10 @@ def stable_neo_hookean_barrier(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -222,6 +247,8 @@ def isochoric_neo_hookean(
     bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -247,6 +274,10 @@ def isochoric_neo_hookean(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -270,6 +301,8 @@ def isochoric_extended(
     threshold: float = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -297,6 +330,10 @@ def isochoric_extended(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -319,6 +356,8 @@ def corotated(
     bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -344,6 +383,10 @@ def corotated(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -366,6 +409,8 @@ def fixed_corotated(
     bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -391,6 +436,10 @@ def fixed_corotated(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -413,6 +462,8 @@ def stvk(
     bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -438,6 +489,10 @@ def stvk(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -461,6 +516,8 @@ def stvk_resistant(
     resistance: float = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -488,6 +545,10 @@ def stvk_resistant(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -510,6 +571,8 @@ def linear(
     bulk_choice: Literal["consistent", "bulk_modulus"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -535,6 +598,10 @@ def linear(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -559,6 +626,8 @@ def mooney_rivlin(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -588,6 +657,10 @@ def mooney_rivlin(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -610,6 +683,8 @@ def fung(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -635,6 +710,10 @@ def fung(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -660,6 +739,8 @@ def arruda_boyce(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -691,6 +772,10 @@ def arruda_boyce(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -711,6 +796,8 @@ def ogden(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -732,6 +819,10 @@ def ogden(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -752,6 +843,8 @@ def yeoh(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -773,6 +866,10 @@ def yeoh(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -794,6 +891,8 @@ def gent(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -817,6 +916,10 @@ def gent(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -838,6 +941,8 @@ def veronda_westmann(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -861,6 +966,10 @@ def veronda_westmann(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -882,6 +991,8 @@ def holmes_mow(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -905,6 +1016,10 @@ def holmes_mow(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -929,6 +1044,8 @@ def isochoric_mooney_rivlin(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -958,6 +1075,10 @@ def isochoric_mooney_rivlin(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -980,6 +1101,8 @@ def isochoric_fung(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1005,6 +1128,10 @@ def isochoric_fung(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -1030,6 +1157,8 @@ def isochoric_arruda_boyce(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1061,6 +1190,10 @@ def isochoric_arruda_boyce(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -1081,6 +1214,8 @@ def isochoric_ogden(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1102,6 +1237,10 @@ def isochoric_ogden(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -1122,6 +1261,8 @@ def isochoric_yeoh(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1143,6 +1284,10 @@ def isochoric_yeoh(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -1164,6 +1309,8 @@ def isochoric_gent(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1187,6 +1334,10 @@ def isochoric_gent(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -1208,6 +1359,8 @@ def isochoric_veronda_westmann(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1231,6 +1384,10 @@ def isochoric_veronda_westmann(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -1252,6 +1409,8 @@ def isochoric_holmes_mow(
     volume_energy: Literal["by_law", "quadratic", "logarithmic", "mixed"] = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1275,6 +1434,10 @@ def isochoric_holmes_mow(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:
@@ -1293,6 +1456,8 @@ def named(
     poisson: float = ...,
     density: float = ...,
     region: Union[str, None] = ...,
+    prony: Union[Sequence["_PronyTerm"], None] = ...,
+    static_time: Literal["long_term", "seconds"] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1310,6 +1475,10 @@ def named(
         [kg/m^3] see the page of the effect; > 0 (default: 1000)
     region:
         of the mesh (default: every region not named elsewhere)
+    prony:
+        terms of a Prony series: an isochoric law then relaxes
+    static_time:
+        what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
     fibers:
         families of fibers
     compression_penalty:

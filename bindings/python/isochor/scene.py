@@ -13,6 +13,7 @@ import numpy as np
 
 from . import _isochor, keys as _keys
 from .errors import Error
+from .world import World
 
 Overrides = Mapping[str, Any]
 StepCallback = Callable[[int, int, float], None]
@@ -83,6 +84,31 @@ class Scene:
     def folder(self) -> str:
         """Where relative paths start."""
         return self._core.folder
+
+    @property
+    def steps(self) -> int:
+        """How many steps its analysis has."""
+        return int(self._core.plan()[0])
+
+    @property
+    def step_length(self) -> float:
+        """Of each of them [s]; in statics, of load factor."""
+        return float(self._core.plan()[1])
+
+    @property
+    def path_step(self) -> float | None:
+        """Length of a step of ``World.follow`` [m] where the analysis follows a path; else None."""
+        return self._core.plan()[2]
+
+    def world(self, *, threads: int = 0) -> World:
+        """A compiled world of the scene, as often as asked, to be stepped and changed.
+
+        Bodies and effects are found by their names in the file: ``world["chamber"].amount = 2e3``. With
+        ``for _ in range(scene.steps): world.advance(scene.step_length)`` (or ``world.follow(scene.path_step)``) it goes
+        where ``run()`` goes, with the same bits. ``threads``: 0 is all of the machine.
+        Raises :class:`isochor.Error` for what cannot be built.
+        """
+        return World._of_scene(self, int(threads))
 
     def run(
         self,

@@ -34,7 +34,7 @@ Amount = Any  # a number, or points [(time, value), ...]
 class Body:
     """A body of a world; made by ``World.add_body``."""
 
-    def __init__(self, world: World, core_id: Any, name: str, described: dict[str, Any], mesh: Mesh) -> None:
+    def __init__(self, world: World, core_id: Any, name: str, described: dict[str, Any], mesh: Mesh | None) -> None:
         self._world = world
         self._id = core_id
         self._name = name
@@ -259,8 +259,39 @@ class World:
         self._begin(_isochor.World(_keys.text(self._options)))
         self.progress = progress
 
+    @classmethod
+    def _of_scene(cls, scene: Any, threads: int) -> World:
+        core, bodies, effects = scene._core.world(threads)
+        said = scene.to_dict()
+        made = cls.__new__(cls)
+        analysis = said.get("analysis", {})
+        run_alone = ("type", "duration", "steps", "step", "path_step")
+        made._options = {key: value for key, value in analysis.items() if key not in run_alone}
+        if analysis.get("type", "static") == "static":
+            made._options["scheme"] = "continuation" if scene.path_step else "statics"
+        made._options["threads"] = threads
+        made._options.update({key: said[key] for key in ("gravity", "gravity_amount") if key in said})
+        made._begin(core)
+        made._scene = scene
+        made._lives = True
+        for core_id, keys in zip(bodies, said["bodies"]):
+            # The mesh has the surfaces and node sets that the file names by where they are.
+            described = {k: v for k, v in keys.items() if k not in ("mesh", "surfaces", "node_sets")}
+            described.setdefault("name", "body")
+            made._bodies.append(Body(made, core_id, described["name"], described, None))
+        if "volumes" not in said:
+            said["volumes"] = [
+                {"name": f"volume {b.name}" if k else "volume", "body": b.name} for k, b in enumerate(made._bodies)
+            ]
+        by_name = {keys["name"]: (kind, keys) for kind, keys in _effects_of(said)}
+        for name, core_id in effects:
+            kind, keys = by_name[name]
+            made._effects.append(LiveEffect(made, core_id, _described(kind, keys)))
+        return made
+
     def _begin(self, core: Any) -> None:
         self._core = core
+        self._scene: Any = None  # that it is a world of, as long as nothing was added, removed or replaced
         self._bodies: list[Body] = []
         self._effects: list[LiveEffect] = []
         self._progress: Callable[[Progress], None] | None = None
@@ -273,6 +304,7 @@ class World:
     # ---- changes that wait for the next step ----
 
     def _changing(self) -> None:
+        self._scene = None
         if self._before is None:
             self._before = [(b, b._described) for b in self._bodies]
             self._before += [(e, e._description) for e in self._effects]
@@ -676,6 +708,7 @@ class World:
         made._begin(core)
         made._gravity = self._gravity.copy()
         made._lives = self._lives
+        made._scene = self._scene
         made._bodies = [Body(made, b._id, b._name, b._described, b._given) for b in self._bodies]
         made._effects = [LiveEffect(made, e._id, e._description) for e in self._effects]
         for mine, its in zip(self._effects, made._effects):
@@ -697,15 +730,32 @@ class World:
             object.__setattr__(effect, "_amount", None)
 
     def __getstate__(self) -> dict[str, Any]:
+        if self._scene is not None:
+            return {
+                "scene": self._scene,
+                "threads": self._options["threads"],
+                "amounts": [e._amount for e in self._effects],
+                "state": self.save(),
+                "gravity": self._gravity,
+            }
         return {
             "options": self._options,
-            "bodies": [(body._given, body._described) for body in self._bodies],
+            "bodies": [(body._given or body.mesh, body._described) for body in self._bodies],
             "effects": [(e.kind, self._with_body(e._description), e._amount) for e in self._effects],
             "state": self.save() if self._bodies else None,
             "gravity": self._gravity,
         }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
+        if "scene" in state:
+            self.__dict__.update(World._of_scene(state["scene"], state["threads"]).__dict__)
+            for thing in self._things():
+                object.__setattr__(thing, "_world", self)
+            for effect, amount in zip(self._effects, state["amounts"]):
+                object.__setattr__(effect, "_amount", amount)
+            self._ready().load(state["state"])
+            self._gravity = state["gravity"]  # the state has it
+            return
         self.__init__(**state["options"])  # type: ignore[misc]
         for mesh, described in state["bodies"]:
             body_id = self._core.add_body(mesh._core, _keys.text(described))
@@ -723,6 +773,22 @@ class World:
 
     def __repr__(self) -> str:
         return f"<isochor.World: {len(self._bodies)} bodies, {len(self._effects)} effects, t = {self.time:g}>"
+
+
+def _effects_of(said: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Kinds and keys of the effects of a scene file."""
+    for kind, name in _keys.effect_types().items():
+        for keys in said.get(name, []):
+            yield kind, keys
+
+
+def _described(kind: str, keys: dict[str, Any]) -> Effect:
+    keys = dict(keys)
+    body = keys.pop("body", None)
+    if body is None and "body" in keys.get("where", {}):
+        keys["where"] = dict(keys["where"])
+        body = keys["where"].pop("body")
+    return Effect(kind, keys, body)
 
 
 def _materials(given: Material | Sequence[Material]) -> list[Material]:

@@ -27,10 +27,9 @@ HostedWorld::HostedWorld(WorldOptions options, KeyMeaning meaning) : meaning_(st
 HostedWorld::HostedWorld(World& world, KeyMeaning meaning, Common common, std::shared_ptr<void> owner)
     : owner_(std::move(owner)), world_(&world), meaning_(std::move(meaning)), common_(std::move(common)) {}
 
-// A clone writes to the log of the world that it is a clone of.
-HostedWorld::HostedWorld(World&& world, const HostedWorld& like)
-    : own_(std::move(world)), world_(&*own_), meaning_(like.meaning_) {
-  common_.log = like.common_.log;
+HostedWorld::HostedWorld(World&& world, KeyMeaning meaning, const LogLines& log)
+    : own_(std::move(world)), world_(&*own_), meaning_(std::move(meaning)) {
+  common_.log = log;
   listen();
 }
 
@@ -40,7 +39,8 @@ void HostedWorld::listen() {
 
 std::shared_ptr<HostedWorld> HostedWorld::clone(int threads) {
   Result<World> made = work("clone", [threads](World& w) { return w.clone(threads); });
-  return std::shared_ptr<HostedWorld>(new HostedWorld(need(std::move(made)), *this));
+  // A clone writes to the log of the world that it is a clone of.
+  return std::make_shared<HostedWorld>(need(std::move(made)), meaning_, common_.log);
 }
 
 void HostedWorld::set_progress(const py::object& callback) {

@@ -42,6 +42,8 @@ struct Common {
 class HostedWorld {
  public:
   HostedWorld(WorldOptions options, KeyMeaning meaning);
+  // One that is there already, and writes to `log`.
+  HostedWorld(World&& world, KeyMeaning meaning, const LogLines& log);
   // One of a batch, which `owner` keeps alive and whose calls are those of `common`.
   HostedWorld(World& world, KeyMeaning meaning, Common common, std::shared_ptr<void> owner);
   HostedWorld(const HostedWorld&) = delete;
@@ -80,7 +82,6 @@ class HostedWorld {
     LogLines& lines;
     ~PassOn() { lines.pass_on(); }
   };
-  HostedWorld(World&& world, const HostedWorld& like);
   void listen();
 
   std::optional<World> own_;

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "hosted_world.h"
 #include "interruption.h"
 #include "reports.h"
 #include "scenes/library.h"
@@ -178,6 +179,31 @@ py::dict run(const SceneDef& scene, const std::string& folder, int threads, std:
   return dict_of(result);
 }
 
+// A compiled world, and its bodies and effects: (world, [id], [(name, id)]).
+py::tuple world_of(const SceneDef& scene, int threads) {
+  if (threads < 0)
+    throw Refused("Scene.world: threads = " + std::to_string(threads) + "; give a positive number, or 0 for all");
+  LogLines log;
+  SceneDef logged = scene;
+  logged.analysis.options.log = log.writer();
+  std::optional<BuiltScene> built;
+  {
+    const py::gil_scoped_release free;
+    built.emplace(need(build(logged, {threads})));
+  }
+  log.pass_on();
+  KeyMeaning meaning;
+  meaning.analysis = scene.analysis.type;
+  meaning.gravity = scene.analysis.options.gravity;
+  meaning.gravity_curve = scene.analysis.options.gravity_curve;
+  py::list effects;
+  for (const EffectId id : built->world.effects())
+    effects.append(py::make_tuple(std::string(built->world.effect_name(id)), id));
+  const std::vector<BodyId> bodies = built->bodies;
+  return py::make_tuple(std::make_shared<HostedWorld>(std::move(built->world), std::move(meaning), log),
+                        py::cast(bodies), effects);
+}
+
 }  // namespace
 
 void bind_scenes(py::module_& module) {
@@ -195,6 +221,12 @@ void bind_scenes(py::module_& module) {
       .def_readonly("name", &SceneDef::name)
       .def_readonly("title", &SceneDef::title)
       .def_readonly("folder", &SceneDef::folder)
+      .def("plan",
+           [](const SceneDef& scene) {
+             const StepPlan plan = plan_steps(scene.analysis);
+             return py::make_tuple(plan.steps, plan.h, scene.analysis.path_step);
+           })
+      .def("world", &world_of)
       .def("run", &run);
   module.def("library", &library);
   module.def("scenes_folder", &scenes_folder);

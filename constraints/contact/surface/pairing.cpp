@@ -1,5 +1,6 @@
 #include "constraints/contact/surface/pairing.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/text.h"
@@ -29,12 +30,14 @@ std::shared_ptr<ContactRows> pair_rows(const Builder& builder, const SurfaceCont
 std::vector<Index> pairs_in_memory(std::span<const double> memory, int per) {
   const auto step = static_cast<std::size_t>(per);
   std::vector<Index> pairs(memory.size() / step);
-  for (std::size_t s = 0; s < pairs.size(); ++s) pairs[s] = static_cast<Index>(memory[step * s]) - 1;
+  for (std::size_t s = 0; s < pairs.size(); ++s)
+    pairs[s] = std::max(static_cast<Index>(memory[step * s]) - 1, Index{-1});
   return pairs;
 }
 
 void keep_pairs(std::span<const Index> pairs, int per, std::span<double> memory) {
-  for (std::size_t s = 0; s < pairs.size(); ++s) memory[static_cast<std::size_t>(per) * s] = pairs[s] + 1;
+  for (std::size_t s = 0; s < pairs.size(); ++s)
+    memory[static_cast<std::size_t>(per) * s] = pairs[s] < 0 ? -1 : pairs[s] + 1;
 }
 
 Result<std::vector<Index>> checked_pairs(std::span<const double> memory, int per, Index choices,
@@ -42,7 +45,7 @@ Result<std::vector<Index>> checked_pairs(std::span<const double> memory, int per
   const auto step = static_cast<std::size_t>(per);
   for (std::size_t first = 0; first < memory.size(); first += step) {
     const double kept = memory[first];
-    if (kept >= 0 && kept <= choices && kept == std::floor(kept)) continue;
+    if (kept >= -1 && kept <= choices && kept == std::floor(kept)) continue;
     return Error{"contact \"" + name + "\" is said to be close to " + what + " number " + number(kept - 1) +
                  " of " + std::to_string(choices)};
   }

@@ -35,7 +35,7 @@ std::shared_ptr<ContactRows> pair_rows(const Builder& builder, const SurfaceCont
                                        PairSetup& setup);
 
 // By stencil the triangle or edge that it is paired with, or -1, from the first of each `per` numbers of
-// memory, which is one more.
+// memory: one more, or -1. Zeros are a memory in which no step was accepted, which is not one without pairs.
 std::vector<Index> pairs_in_memory(std::span<const double> memory, int per);
 void keep_pairs(std::span<const Index> pairs, int per, std::span<double> memory);
 // The same for memory that comes from a file, where only numbers below `choices` make sense. `what`: triangle
