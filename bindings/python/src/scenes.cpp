@@ -182,7 +182,8 @@ py::dict run(const SceneDef& scene, const std::string& folder, int threads, std:
 // A compiled world, and its bodies and effects: (world, [id], [(name, id)]).
 py::tuple world_of(const SceneDef& scene, int threads) {
   if (threads < 0)
-    throw Refused("Scene.world: threads = " + std::to_string(threads) + "; give a positive number, or 0 for all");
+    throw Refused("Scene.world: threads = " + std::to_string(threads) +
+                  "; give a positive number, or 0 for all");
   LogLines log;
   SceneDef logged = scene;
   logged.analysis.options.log = log.writer();
