@@ -20,7 +20,7 @@ struct SolidPool::Lane {
 namespace {
 
 // dJ/dF, row-major.
-void cofactor(const double F[9], double g[9]) {
+[[gnu::always_inline]] inline void cofactor(const double F[9], double g[9]) {
   g[0] = F[4] * F[8] - F[5] * F[7];
   g[1] = F[5] * F[6] - F[3] * F[8];
   g[2] = F[3] * F[7] - F[4] * F[6];
