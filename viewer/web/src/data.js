@@ -189,6 +189,9 @@ export class RunData {
     return out;
   }
 
+  /** How many values of a field in one frame are not finite. */
+  invalid(frame, field) { return field.kind === 'given' ? frame.info.ranges[field.index][2] : 0; }
+
   /** The fields of the run and the two that every run has. */
   fieldList() {
     const given = this.head.fields.map((f, index) => ({ ...f, kind: 'given', index }));
