@@ -78,7 +78,7 @@ struct LiveArguments {
   std::string folder;  // of recordings; empty: out/live_NAME
   int port = 0, threads = 0;
   double step_limit = 60;  // [s]
-  bool readonly = false, paused = false, record = false, quiet_browser = false;
+  bool dynamic = false, readonly = false, paused = false, record = false, quiet_browser = false;
 };
 
 // A scene of the library by its name, or the one of a file.

@@ -40,6 +40,15 @@ int refuse(Exit code, const std::string& sentence) {
   return code;
 }
 
+// Curves over the load factor are then curves over seconds.
+void set_in_motion(AnalysisDef& a) {
+  if (a.type == AnalysisType::dynamics) return;
+  a.type = AnalysisType::dynamics;
+  a.path_step.reset();
+  a.step = 1.0 / 60;
+  a.duration = 60;
+}
+
 void greet(const LiveArguments& a, const live::Server& server, const SceneDef& scene) {
   std::printf("%s\n", server.link().c_str());
   if (!live::is_loopback(a.host))
@@ -62,6 +71,7 @@ int live(const LiveArguments& a) {
   live::ServerOptions server_options{a.host, a.port, live_page()};
   if (server_options.page.empty())
     return refuse(unavailable, "this build has no page (node and npm were missing when it was made)");
+  if (a.dynamic) set_in_motion(scene.value().analysis);
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   live::SimulationOptions options;

@@ -102,7 +102,7 @@ void add_view(CLI::App& top, app::ViewArguments& a) {
 constexpr const char* kLiveFooter =
     "Exit codes: 0 ended by Ctrl-C, 1 internal error, 2 bad input, 5 a recording cannot be written,\n"
     "6 out of memory, 7 the port is in use or there is no such address, 8 live is not in this build.\n"
-    "Example: isochor live finger --set bodies[0].mesh.file=meshes/finger_small.msh";
+    "Example: isochor live finger --dynamic --set bodies[0].mesh.file=meshes/finger_small.msh";
 
 void add_live(CLI::App& top, app::LiveArguments& a) {
   CLI::App* c = top.add_subcommand("live", "Run a scene in the browser, where it answers to the hand");
@@ -122,6 +122,7 @@ void add_live(CLI::App& top, app::LiveArguments& a) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   c->add_option("--out", a.folder, "Folder of recordings; default out/live_NAME")->type_name("DIR");
+  c->add_flag("--dynamic", a.dynamic, "Statics as a motion, in steps of 1/60 s: the load factor becomes seconds");
   c->add_flag("--record", a.record, "Record from the beginning, with the outputs of `isochor run`");
   c->add_flag("--paused", a.paused, "Begin at rest");
   c->add_flag("--readonly", a.readonly, "Viewers may look on and change nothing");

@@ -112,6 +112,7 @@ std::string scene_message(const Simulation& simulation, bool readonly) {
                      {"name", scene.name},
                      {"version", version()},
                      {"readonly", readonly},
+                     {"notes", simulation.notes()},
                      {"dynamic", simulation.dynamic()},
                      {"step", simulation.step_length()},
                      {"up", std::string(1, s.up)},

@@ -65,6 +65,12 @@ Result<void> Simulation::start() {
   return {};
 }
 
+std::vector<std::string> Simulation::notes() const {
+  std::vector<std::string> out = beginning_->warnings();
+  for (const std::string& w : recorder_->warnings()) out.push_back(w);
+  return out;
+}
+
 void Simulation::list_measures() {
   constexpr std::size_t most = 60;
   for (const std::string& name : shown_.cavities) {

@@ -68,6 +68,8 @@ class Simulation {
   const std::vector<Measure>& measures() const { return measures_; }
   // Fields with one value a triangle, which do not change.
   const std::vector<std::vector<double>>& maps() const { return maps_; }
+  // What building the scene has noticed.
+  std::vector<std::string> notes() const;
   Index elements() const { return shown_.elements; }
   double step_length() const { return plan_.h; }
   bool dynamic() const { return scene_.analysis.type == AnalysisType::dynamics; }

@@ -20,7 +20,7 @@ export class LiveData {
     this.scale = 2 / (ROOM * this.extent);
     const pad = 0.25 * this.extent;
     this.head = {
-      ...head, frames: [], series: [], summary: [], run: [], notes: [], footer: `isochor ${head.version} · scene ${head.name}`,
+      ...head, frames: [], series: [], summary: [], run: [], footer: `isochor ${head.version} · scene ${head.name}`,
       x: head.dynamic ? { label: 'Time', symbol: 't', unit: 's' } : { label: 'Load factor', symbol: 'λ', unit: '' },
       box: { low: box.low.map((v) => v - pad), high: box.high.map((v) => v + pad) },
     };

@@ -54,7 +54,7 @@ class LiveViewer extends Display {
     document.title = `${run.head.title} · Isochor live`;
     this.page.root.classList.toggle('unlabeled', !options.labels);
     document.documentElement.classList.toggle('shot', options.shot);
-    this.page.notes.append(...options.problems.map((text) => el('p', {}, text)));
+    this.page.notes.append(...[...options.problems, ...run.head.notes].map((text) => el('p', {}, text)));
     try {
       this.stage = new Stage(run, this.page.stage);
       this.hand = new Hand(this);
@@ -154,7 +154,9 @@ class LiveViewer extends Display {
   say(refusal) {
     if (!refusal) return;
     const note = el('p', {}, refusal);
-    this.page.notes.replaceChildren(note);
+    this.page.notes.append(note);
+    this.refusal?.remove();
+    this.refusal = note;
     setTimeout(() => note.remove(), 6000);
   }
 
