@@ -111,7 +111,8 @@ Result<int> Hand::push(const Hit& hit, BuiltScene& built) {
   held.body = built.bodies[hit.body];
   held.state.id = next_;
   held.state.kind = HandleKind::push;
-  held.state.radius = kSphere * extent_;
+  // Nodes are what it touches: between those of a coarse surface a small one would slip through.
+  held.state.radius = std::max(kSphere * extent_, 1.5 * hit.size);
   // A little way off, so that it begins without touching.
   held.rest = hit.now + 1.05 * held.state.radius * hit.normal;
   ContactDef def;

@@ -17,6 +17,7 @@ struct Hit {
   std::size_t body = 0;
   Vec3 rest{}, now{};  // [m]
   Vec3 normal{};       // outward, now
+  double size = 0;     // the longest side of the triangle [m]
 };
 
 struct HandleState {

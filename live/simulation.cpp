@@ -112,6 +112,10 @@ Result<Hit> Simulation::hit(const Command& c) const {
     hit.rest += c.weights[k] * s.rest[v];
     hit.now += c.weights[k] * x[k];
   }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 side = x[k] - x[(k + 1) % 3];
+    hit.size = std::max(hit.size, std::sqrt(dot(side, side)));
+  }
   const Vec3 n = cross(x[1] - x[0], x[2] - x[0]);
   const double size = std::sqrt(dot(n, n));
   if (size > 0) hit.normal = (1 / size) * n;
