@@ -210,12 +210,12 @@ void Dials::add_materials() {
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
     for (std::size_t m = 0; m < scene_.bodies[b].materials.size(); ++m) {
       const MaterialDef& def = scene_.bodies[b].materials[m];
-      std::string name = scene_.bodies[b].name;
-      if (!def.region.empty()) name += ", " + def.region;
+      std::string group = "Material of " + scene_.bodies[b].name;
+      if (!def.region.empty()) group += ", " + def.region;
       const auto constant = [&](const char* what, const char* unit, double low, double high, bool logarithmic,
                                 double ElasticConstants::*member) {
         add(
-            {"Materials", std::string(what) + " of " + name, unit, low, high, logarithmic},
+            {group, what, unit, low, high, logarithmic},
             [&def, member](double) { return def.constants.*member; },
             [b, m, member](double value, SceneDef& scene, BuiltScene& built) -> Result<void> {
               MaterialDef& here = scene.bodies[b].materials[m];

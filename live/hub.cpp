@@ -52,6 +52,13 @@ Answer Hub::join(Clock::time_point now) {
   return {200, "{\"viewer\":\"" + name + "\"}", false};
 }
 
+Answer Hub::leave(const std::string& viewer) {
+  const std::lock_guard lock(mutex_);
+  if (viewers_.erase(viewer) == 0) return refuse_counted(410, kUnknown);
+  if (viewer == driver_) driver_.clear();
+  return {200, "{}", false};
+}
+
 Answer Hub::scene(const std::string& viewer, Clock::time_point now) {
   {
     const std::lock_guard lock(mutex_);

@@ -26,6 +26,8 @@ class Hub {
 
   // A new viewer; the first one drives. {"viewer": "..."}
   Answer join(Clock::time_point now);
+  // A viewer that goes says so; one that does not is missed after a while.
+  Answer leave(const std::string& viewer);
   Answer scene(const std::string& viewer, Clock::time_point now);
   // The newest picture, waited for while it has number `after`.
   Answer picture(const std::string& viewer, const std::string& after, const std::string& field);

@@ -87,6 +87,9 @@ void Server::Impl::serve() {
   http.Post("/join", [this](const httplib::Request&, httplib::Response& response) {
     send(response, hub.join(Hub::Clock::now()));
   });
+  http.Post("/leave", [this](const httplib::Request& request, httplib::Response& response) {
+    send(response, hub.leave(request.get_header_value(kViewer)));
+  });
   http.Get("/scene", [this](const httplib::Request& request, httplib::Response& response) {
     send(response, hub.scene(request.get_header_value(kViewer), Hub::Clock::now()));
   });

@@ -56,11 +56,17 @@ TEST_CASE("the first viewer drives, another one may take over, and the driver's 
   CHECK(head_of(hub.picture(second, "0", ""))["drives"] == true);
   CHECK(head_of(hub.picture(first, "0", ""))["drives"] == false);
   CHECK(head_of(hub.picture(first, "0", ""))["viewers"] == 2);
+  // The driver goes, and the next one who does something drives.
+  CHECK(hub.leave(second).status == 200);
+  CHECK(hub.leave(second).status == 410);
+  CHECK(hub.command(first, R"({"do": "step"})", now).status == 200);
+  const std::string third = join(hub, now);
+  CHECK(hub.command(third, R"({"do": "take"})", now).status == 200);
   // The driver is silent for long.
   const auto later = now + std::chrono::seconds(20);
   (void)hub.scene(first, later);
   CHECK(hub.command(first, R"({"do": "step"})", later).status == 200);
-  CHECK(hub.command(second, R"({"do": "step"})", later).status == 410);
+  CHECK(hub.command(third, R"({"do": "step"})", later).status == 410);
 }
 
 TEST_CASE("who only looks on changes nothing") {

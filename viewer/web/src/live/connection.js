@@ -55,6 +55,11 @@ export class Connection {
     return new Message(await (await this.ask('/scene')).arrayBuffer());
   }
 
+  /** When the page goes; nobody waits for an answer. */
+  leave() {
+    if (this.viewer) this.ask('/leave', { method: 'POST', keepalive: true }).catch(() => {});
+  }
+
   async picture(after, field) {
     const query = new URLSearchParams({ after: String(after), field });
     return new Message(await (await this.ask(`/picture?${query}`)).arrayBuffer());

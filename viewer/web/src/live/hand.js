@@ -2,7 +2,6 @@
 import * as THREE from 'three';
 import { bodyFragment, bodyVertex } from '../shaders.js';
 import { significant, unitScale } from '../numbers.js';
-import { pick } from '../pick.js';
 
 export const TOOLS = [['pull', 'Pull', 'Drag a body: a spring pulls at it'], ['pin', 'Pin', 'Click a body to hold it there, a pin to let go'],
   ['push', 'Push', 'Drag on a body: a sphere pushes it'], ['turn', 'Turn', 'Dragging turns the view']];
@@ -39,8 +38,8 @@ export class Hand {
     } else if (known && this.tool !== 'turn') {
       this.begin(event, { id: known.id, keep: true, point: viewer.run.toWorld(known.to) });
     } else {
-      const hit = this.tool === 'turn' ? null : pick(viewer.stage, event);
-      if (!hit || viewer.run.head.parts[viewer.run.trianglePart[hit.triangle]].obstacle) return;
+      const hit = this.tool === 'turn' ? null : viewer.pickAt(event);
+      if (!hit) return;
       const { triangle, weights, point } = hit;
       viewer.send({ do: this.tool, triangle, weights });
       // The handle is the next one that turns up.

@@ -7,6 +7,7 @@ import { Display } from '../display.js';
 import { el } from '../dom.js';
 import { buildPage } from '../layout.js';
 import { significant } from '../numbers.js';
+import { pick } from '../pick.js';
 import { Stage } from '../stage.js';
 import { Connection } from './connection.js';
 import { LiveControls } from './controls.js';
@@ -166,6 +167,12 @@ class LiveViewer extends Display {
     this.connection.sendLatest(`set ${index}`, { do: 'set', control: index, value }).then((refusal) => this.say(refusal));
   }
 
+  /** What soft body is under a point of the window, if any. */
+  pickAt(event) {
+    const hit = this.stage ? pick(this.stage, event) : null;
+    return hit && !this.run.head.parts[this.run.trianglePart[hit.triangle]].obstacle ? hit : null;
+  }
+
   savePicture() {
     const { stage } = this;
     if (!stage) return;
@@ -227,6 +234,7 @@ async function open() {
   const options = readLink(window.location);
   const connection = new Connection(options.token);
   let viewer = null;
+  window.addEventListener('pagehide', () => connection.leave());
   for (;;) {
     try {
       const message = await connection.join();
