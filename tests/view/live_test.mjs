@@ -18,7 +18,8 @@ if (!findChromium()) {
 
 const folder = mkdtempSync(join(tmpdir(), 'isochor-live-'));
 const SMALL = ['finger', '--set', 'bodies[0].mesh.file=meshes/finger_small.msh', '--set', 'probes=[]', '--set', 'metrics=[]'];
-const MOVING = [...SMALL, '--dynamic'];
+// Few and long steps: the browser draws by the processor, and wants some of it.
+const MOVING = [...SMALL, '--threads', '1', '--set', 'analysis.type=dynamic', '--set', 'analysis.duration=10', '--set', 'analysis.steps=150'];
 
 /** A server that runs until it is told to end. */
 class Live {
@@ -60,8 +61,8 @@ class Live {
 
 const browser = await Browser.launch();
 
-async function view(live, { drives = true, ...options } = {}) {
-  const page = await browser.open(live.link, options);
+async function view(live, { drives = true, width = 900, height = 640, ...options } = {}) {
+  const page = await browser.open(live.link, { width, height, ...options });
   await page.waitFor('window.isochorLive?.frame && window.isochorLive.stage.opened');
   if (!drives) return page;
   await page.evaluate(`isochorLive.send({ do: 'take' })`);
@@ -113,11 +114,19 @@ async function finish(page) {
   await page.close();
 }
 
+/** Of the scene that all share, whatever was done to it before. */
+async function viewShared(options) {
+  const page = await view(shared, options);
+  await page.evaluate(`(async () => { for (const what of ['reset', 'play']) await isochorLive.send({ do: what }); })()`);
+  await page.waitFor('isochorLive.frame.info.playing && isochorLive.frame.info.handles.length === 0');
+  return page;
+}
+
 const shared = await Live.start(...MOVING);
 
 const tests = {
   async 'a scene starts, plays, pauses, steps and begins again'() {
-    const page = await view(shared);
+    const page = await viewShared();
     await page.waitFor('isochorLive.frame.info.step > 5');
     assert.equal(await info(page, 'playing'), true);
     assert.match(await page.evaluate(`isochorLive.controls.pace.textContent`), /× real time, [\d.]+ ms a step/);
@@ -137,9 +146,9 @@ const tests = {
   },
 
   async 'a slider moves the body, and numbers may be typed'() {
-    const page = await view(shared);
+    const page = await viewShared();
     const volume = 'isochorLive.frame.info.measures[1]';
-    await page.waitFor('isochorLive.frame.info.time > 1.2');
+    await page.waitFor('isochorLive.frame.info.time > 1.1');
     const before = await page.evaluate(volume);
     await slide(page, 'chamber', 0);
     await page.waitFor(`isochorLive.frame.info.dials[1] < 0 && ${volume} < ${before} * 0.97`);
@@ -154,16 +163,24 @@ const tests = {
   },
 
   async 'a point is pulled, shows its force, and is let go; a pin stays'() {
-    const page = await view(shared);
+    const page = await viewShared();
+    const play = async (on) => {
+      await page.evaluate(`isochorLive.send({ do: '${on ? 'play' : 'pause'}' })`);
+      await page.waitFor(`isochorLive.frame.info.playing === ${on}`);
+    };
+    await play(false); // what rests is hit
     const from = await hitNear(page, await page.evaluate(ON_BODY));
     assert.ok(from, 'the body is in the picture');
     await mouse(page, 'mousePressed', from);
+    await page.waitFor('isochorLive.frame.info.handles.length === 1');
+    await play(true);
     for (const d of [10, 25, 40]) await mouse(page, 'mouseMoved', { x: from.x, y: from.y + d });
     await page.waitFor('isochorLive.frame.info.handles[0]?.force > 1e-3');
     await page.waitFor(`/\\d N|mN/.test(document.querySelector('.hand text')?.textContent ?? '')`);
     await mouse(page, 'mouseReleased', { x: from.x, y: from.y + 40 });
     await page.waitFor('isochorLive.frame.info.handles.length === 0');
     await page.key('2');
+    await play(false);
     const again = await hitNear(page, await page.evaluate(ON_BODY));
     await mouse(page, 'mousePressed', again);
     await mouse(page, 'mouseReleased', again);
@@ -181,11 +198,13 @@ const tests = {
   },
 
   async 'fields, the value under the cursor, a picture, and a link that restores the view'() {
-    const page = await view(shared);
+    const page = await viewShared();
     await page.key('c');
     await page.waitFor(`isochorLive.frame.field === isochorLive.state.field.name || isochorLive.state.field.kind !== 'given'`);
     await page.evaluate(`{ const { fieldSelect } = isochorLive.controls; fieldSelect.value = isochorLive.fields.findIndex((f) => f.name === 'pressure'); fieldSelect.dispatchEvent(new Event('change')); }`);
     await page.waitFor(`isochorLive.frame.field === 'pressure' && /Mean stress/.test(document.querySelector('.legend').textContent)`);
+    await press(page, 'playButton'); // what rests stays under the cursor
+    await page.waitFor('!isochorLive.frame.info.playing');
     const at = await hitNear(page, await page.evaluate(ON_BODY));
     await page.send('Input.dispatchMouseEvent', { type: 'mouseMoved', x: at.x, y: at.y });
     await page.waitFor(`/Pa$/.test(document.querySelector('.under-cursor:not([hidden])')?.textContent ?? '')`);
@@ -207,7 +226,7 @@ const tests = {
   },
 
   async 'of two viewers one drives, and the other may take over'() {
-    const first = await view(shared), second = await view(shared, { drives: false });
+    const first = await viewShared(), second = await view(shared, { drives: false });
     await first.waitFor('isochorLive.frame.info.viewers >= 2');
     await second.waitFor(`!isochorLive.frame.info.drives && isochorLive.controls.playButton.disabled`);
     await second.evaluate(`isochorLive.send({ do: 'reset' })`);
@@ -221,7 +240,7 @@ const tests = {
   },
 
   async 'a viewer that stalls holds up nobody'() {
-    const page = await view(shared);
+    const page = await viewShared();
     const joined = JSON.parse((await shared.ask('/join', { method: 'POST' })).text).viewer;
     // Asks for pictures and reads none of them.
     const socket = connect(Number(shared.url.port), shared.url.hostname);
@@ -245,7 +264,7 @@ const tests = {
   },
 
   async 'a connection that is lost is found again'() {
-    const page = await view(shared);
+    const page = await viewShared();
     await page.evaluate(`{ isochorLive.connection.viewer = '0'.repeat(32); }`);
     await page.waitFor(`isochorLive.connection.viewer !== '0'.repeat(32)`);
     const pictures = await page.evaluate('isochorLive.pictures');
@@ -364,11 +383,15 @@ const tests = {
   },
 
   async 'small windows, dark, by touch'() {
-    const page = await view(shared, { width: 390, height: 800, dark: true });
+    const page = await viewShared({ width: 390, height: 800, dark: true });
     assert.ok(await page.evaluate('document.documentElement.scrollWidth <= window.innerWidth'), 'the page is wider than the window');
     await page.evaluate(`isochorLive.page.stage.scrollIntoView()`);
+    await page.evaluate(`isochorLive.send({ do: 'pause' })`);
+    await page.waitFor('!isochorLive.frame.info.playing');
     const at = await hitNear(page, await page.evaluate(ON_BODY));
     await page.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [at] });
+    await page.waitFor('isochorLive.frame.info.handles.length === 1');
+    await page.evaluate(`isochorLive.send({ do: 'play' })`);
     for (const d of [8, 20, 30]) await page.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: [{ x: at.x, y: at.y + d }] });
     await page.waitFor('isochorLive.frame.info.handles[0]?.force > 1e-3');
     await page.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
