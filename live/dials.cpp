@@ -155,11 +155,13 @@ void Dials::forget() {
 }
 
 void Dials::add_amounts() {
-  const auto amount = [&](Dial dial, const EffectKind& kind, std::size_t i, const Curve& curve) {
+  // `unit`: of the dial, for an amount of one.
+  const auto amount = [&](Dial dial, const EffectKind& kind, std::size_t i, const Curve& curve,
+                          double unit = 1) {
     add(
-        std::move(dial), [&curve](double t) { return evaluate(curve, t); },
-        [&kind, i](double value, SceneDef&, BuiltScene& built) {
-          return built.world.set_amount(built.ids(kind)[i], value);
+        std::move(dial), [&curve, unit](double t) { return unit * evaluate(curve, t); },
+        [&kind, i, unit](double value, SceneDef&, BuiltScene& built) {
+          return built.world.set_amount(built.ids(kind)[i], value / unit);
         });
   };
   const SceneDef& s = scene_;
@@ -183,8 +185,12 @@ void Dials::add_amounts() {
     scale("Loads", s.forces[i].name, forces_kind, i, s.forces[i].amount);
   for (std::size_t i = 0; i < s.dirichlet.size(); ++i) {
     const DirichletDef& d = s.dirichlet[i];
-    const bool moves = length(d.displacement) > 0 || d.angle != 0;
-    if (moves && d.bone.keys.empty() && d.bone.file.empty())
+    const double way = length(d.displacement);
+    if (!d.bone.keys.empty() || !d.bone.file.empty()) continue;
+    const double high = round_up(2 * std::max(reach(d.amount), 0.5));
+    if (way > 0 && d.angle == 0)
+      amount({"Supports", d.name, "m", -high * way, high * way, false}, dirichlet_kind, i, d.amount, way);
+    else if (way > 0 || d.angle != 0)
       scale("Supports", d.name, dirichlet_kind, i, d.amount);
   }
 }

@@ -232,6 +232,12 @@ export class RunData {
     return out;
   }
 
+  /** Of the shadow: the lowest that anything gets to. */
+  groundHeight() {
+    const axis = this.head.up === 'y' ? 1 : 2;
+    return (this.head.box.low[axis] - this.center[axis]) * this.scale;
+  }
+
   /** Where a cut across this axis opens, as a part of the extent of the run. */
   cutPosition(axis) {
     const { low, high } = this.head.box;

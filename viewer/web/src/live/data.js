@@ -135,6 +135,21 @@ export class LiveData {
     return full || !(usual[1] > usual[0]) ? ranges.full : usual;
   }
 
+  /** Of the shadow: a table's, where there is one below the bodies. */
+  groundHeight() {
+    const axis = this.head.up === 'y' ? 1 : 2;
+    let lowest = Infinity, table = null;
+    for (let i = axis; i < 3 * this.bodyVertices; i += 3) lowest = Math.min(lowest, this.rest[i]);
+    this.head.parts.forEach((part, p) => {
+      if (!part.obstacle) return;
+      const heights = [];
+      this.trianglePart.forEach((q, t) => { if (q === p) for (let k = 0; k < 3; ++k) heights.push(this.rest[3 * this.triangles[3 * t + k] + axis]); });
+      const low = Math.min(...heights.slice(0, 5000)), high = Math.max(...heights.slice(0, 5000));
+      if (high - low < 0.02 && low <= lowest + 0.05) table = high;
+    });
+    return table;
+  }
+
   invalid(frame, field) { return this.stats(frame, field)?.invalid ?? 0; }
   cutPosition() { return 0.5; }
 

@@ -109,7 +109,12 @@ class LiveViewer extends Display {
       if (stage.playing !== info.playing) stage.setPlaying(info.playing);
     }
     this.showField();
-    if (!known) this.controls.showRange(); // this is the first picture of the field
+    // The numbers beside the colors follow them, but not faster than anybody reads, nor while somebody types.
+    const now = performance.now();
+    if ((!known || now - (this.rangeSaid ?? 0) > 500) && !document.activeElement?.matches('.bounds input')) {
+      this.rangeSaid = now;
+      this.controls.showRange();
+    }
     this.controls.update(frame);
     this.plots.add(info.time, info.measures);
     this.tell(info);
