@@ -186,8 +186,9 @@ std::string picture_message(const Simulation& simulation, const Shown& shown, co
   const PageScene& s = simulation.shape();
   Json head = picture_head(simulation, shown, audience);
   const std::vector<double>* values = nullptr;
-  for (std::size_t f = 0; shown.has_fields && f < vertex_fields(s) && f < shown.frame.fields.size(); ++f) {
-    if (s.fields[f].name == field && is_computed(simulation, field)) values = &shown.frame.fields[f];
+  const std::size_t computed = shown.values ? std::min(vertex_fields(s), shown.values->size()) : 0;
+  for (std::size_t f = 0; f < computed; ++f) {
+    if (s.fields[f].name == field && is_computed(simulation, field)) values = &(*shown.values)[f];
   }
   head["field"] = values ? Json(field) : Json(nullptr);
   head["values"] = values ? values->size() : 0;

@@ -13,8 +13,6 @@ using std::chrono::duration;
 using std::chrono::duration_cast;
 using std::chrono::milliseconds;
 
-constexpr double kPictures = 60;               // a second, at most
-constexpr double kShare = 0.04;                // of the time, for making pictures
 constexpr milliseconds kIdle{500};             // between looks at what nobody changes
 constexpr std::chrono::seconds kForgotten{3};  // after which fields that nobody asks for are left out
 
@@ -68,6 +66,7 @@ Result<std::unique_ptr<Player>> Player::start(SceneDef scene, SimulationOptions 
   auto simulation = Simulation::make(std::move(scene), std::move(options));
   if (!simulation) return simulation.failure();
   player->simulation_ = std::move(simulation).value();
+  player->latest_ = std::make_shared<Shown>();
   player->publish(false);
   player->thread_ = std::thread([self] { self->run(); });
   return player;
@@ -125,11 +124,11 @@ ShownPtr Player::latest() const {
 ShownPtr Player::wait(std::uint64_t after, bool fields, milliseconds timeout) {
   std::unique_lock lock(mutex_);
   if (fields) {
-    const bool waited = latest_->has_fields;
+    const bool waited = latest_->values != nullptr;
     fields_wanted_ = Clock::now();
     if (!waited) work_.notify_all();
   }
-  const auto there = [&] { return over_ || (latest_->number > after && (latest_->has_fields || !fields)); };
+  const auto there = [&] { return over_ || (latest_->number > after && (latest_->values || !fields)); };
   news_.wait_for(lock, timeout, there);
   return latest_;
 }
@@ -162,29 +161,33 @@ double Player::period() const {
   return std::min(0.1, 2 * h / all) / speed_;
 }
 
+bool Player::lacks(bool fields) const {
+  return fields && (!latest_->values || values_old_);
+}
+
 void Player::live() {
   while (true) {
     if (!work()) return;
     bool fields = false;
     {
       std::unique_lock lock(mutex_);
-      auto now = Clock::now();
+      const auto now = Clock::now();
       fields = now - fields_wanted_ < kForgotten;
       // What has changed is shown as soon as a picture is due, and what moves goes on when its time has come.
       Clock::time_point when = now + kIdle;
-      const bool lacks = fresh_ || (fields && !latest_->has_fields);
-      if (lacks) when = std::min(when, next_picture_);
+      if (fresh_) when = std::min(when, picture_.next());
+      if (lacks(fields)) when = std::min(when, latest_->values && moves() ? fields_.next() : now);
       if (moves()) when = std::min(when, single_ ? now : next_step_);
       if (when > now) {
         work_.wait_until(lock, when, [&] {
-          return over_ || !waiting_.empty() ||
-                 (!latest_->has_fields && Clock::now() - fields_wanted_ < kForgotten && !fields);
+          const bool newly = !fields && Clock::now() - fields_wanted_ < kForgotten;
+          return over_ || !waiting_.empty() || newly;
         });
         continue;
       }
     }
     if (moves() && (single_ || Clock::now() >= next_step_)) make_step();
-    if (Clock::now() >= next_picture_ || !moves()) publish(fields);
+    publish(fields);
   }
 }
 
@@ -242,11 +245,28 @@ void Player::make_step() {
   fresh_ = true;
 }
 
+void Turn::done(Clock::time_point begin, Clock::time_point end) {
+  const double cost = duration<double>(end - begin).count();
+  cost_ = cost_ > 0 ? 0.8 * cost_ + 0.2 * cost : cost;
+  next_ = begin + seconds_of<Clock>(std::max(1 / most_per_s_, cost_ / share_));
+}
+
 void Player::publish(bool fields) {
-  if (!fresh_ && !(fields && !latest_->has_fields)) return;
   const auto begin = Clock::now();
+  // Values that somebody waits for are made at once, others when their turn has come, and the last ones at
+  // rest.
+  const bool first = fields && !latest_->values;
+  const bool anew = first || (fields && (fresh_ || values_old_) && (fields_.due(begin) || !moves()));
+  if (!anew && !(fresh_ && picture_.due(begin))) return;
   auto shown = std::make_shared<Shown>();
-  static_cast<Picture&>(*shown) = simulation_->picture(fields);
+  static_cast<Picture&>(*shown) = simulation_->picture(anew);
+  if (anew) {
+    shown->values = std::make_shared<std::vector<std::vector<double>>>(std::move(shown->frame.fields));
+    fields_.done(begin, Clock::now());
+  } else if (fields) {
+    shown->values = latest_->values;
+  }
+  values_old_ = fields && !anew && (values_old_ || fresh_);
   shown->number = ++number_;
   shown->playing = playing_;
   shown->settled = playing_ && simulation_->settled();
@@ -255,11 +275,7 @@ void Player::publish(bool fields) {
   shown->step_ms = tempo_.step_ms();
   shown->per_s = tempo_.per_s(begin);
   fresh_ = false;
-  const auto now = Clock::now();
-  const double cost = duration<double>(now - begin).count();
-  cost_ = cost_ > 0 ? 0.8 * cost_ + 0.2 * cost : cost;
-  // What pictures cost is bounded, however dear their fields are.
-  next_picture_ = begin + seconds_of<Clock>(std::max(1 / kPictures, cost_ / kShare));
+  if (!anew) picture_.done(begin, Clock::now());
   {
     const std::lock_guard lock(mutex_);
     latest_ = std::move(shown);

@@ -20,6 +20,9 @@ namespace isochor::live {
 // A picture with how the simulation goes.
 struct Shown : Picture {
   std::uint64_t number = 0;  // ascends
+  // Fields of bodies, as of frames; of this state where it is the latest for long, else of one a little
+  // older: they cost many times what positions do. Null: nobody has asked for them.
+  std::shared_ptr<const std::vector<std::vector<double>>> values;
   bool playing = false, settled = false;
   double speed = 1;               // the most that is made of real time
   std::optional<double> factor;   // simulated over real time, lately
@@ -46,6 +49,20 @@ class Tempo {
   std::deque<Step> steps_;
 };
 
+// When something may be done again whose cost is to stay a share of all time.
+class Turn {
+ public:
+  using Clock = std::chrono::steady_clock;
+  explicit Turn(double share, double most_per_s) : share_(share), most_per_s_(most_per_s) {}
+  Clock::time_point next() const { return next_; }
+  bool due(Clock::time_point now) const { return now >= next_; }
+  void done(Clock::time_point begin, Clock::time_point end);
+
+ private:
+  double share_, most_per_s_, cost_ = 0;
+  Clock::time_point next_{};
+};
+
 class Player {
  public:
   static constexpr std::size_t most_waiting = 256;
@@ -59,7 +76,7 @@ class Player {
   Result<void> push(const Command& command);
   ShownPtr latest() const;
   bool over() const;  // stopped, or ended by itself where memory ran out
-  // One that is newer, with fields where they are wanted; the latest after `timeout`.
+  // One that is newer, with values where fields are wanted; the latest after `timeout`.
   ShownPtr wait(std::uint64_t after, bool fields, std::chrono::milliseconds timeout);
   // Ends the thread, stopping a step that works; says what could not be ended in good order.
   Result<void> stop();
@@ -76,6 +93,7 @@ class Player {
   void obey(const Command& command);
   void make_step();
   void publish(bool fields);
+  bool lacks(bool fields) const;  // what is shown, under the mutex
   double period() const;
   bool moves() const;
 
@@ -92,9 +110,11 @@ class Player {
   std::atomic<bool> interrupt_{false};
   // Of the thread.
   bool playing_, single_ = false, fresh_ = true, stuck_ = false;
-  double speed_ = 1, cost_ = 0;  // cost of a picture [s]
+  double speed_ = 1;
   Tempo tempo_;
-  Clock::time_point next_step_{}, next_picture_{};
+  Clock::time_point next_step_{};
+  Turn picture_{0.015, 60}, fields_{0.02, 15};
+  bool values_old_ = false;
   std::uint64_t number_ = 0;
   Result<void> ended_;
 };

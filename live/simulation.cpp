@@ -281,7 +281,6 @@ Picture Simulation::picture(bool fields) const {
   for (std::size_t b = 0; fields && b < built_->bodies.size(); ++b)
     values.push_back(built_->world.fields(built_->bodies[b]));
   p.frame = shape_->frame(view, values);
-  p.has_fields = fields;
   p.step = step_;
   p.time = built_->world.time();
   for (std::size_t d = 0; d < dials_->list().size(); ++d) p.dials.push_back(dials_->value(d, p.time));

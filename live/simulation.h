@@ -33,7 +33,6 @@ struct Measure {
 // What is shown of a world at one time.
 struct Picture {
   PageFrame frame;  // with fields of bodies, or with positions alone
-  bool has_fields = false;
   int step = 0;
   double time = 0;                      // [s], or load factor
   std::vector<double> dials, measures;  // in the order of the lists
@@ -62,6 +61,7 @@ class Simulation {
   void say(const std::string& message) { message_ = message; }
 
   Picture picture(bool fields) const;
+  BodyFields fields_now(std::size_t body) const { return built_->world.fields(built_->bodies[body]); }
   const SceneDef& scene() const { return scene_; }
   const PageScene& shape() const { return shape_->scene(); }
   const std::vector<Dial>& dials() const { return dials_->list(); }

@@ -1,6 +1,8 @@
 // The thread of a simulation: newest pictures, commands in order, nobody waits for anybody.
 #include "live/player.h"
 
+#include <algorithm>
+
 #include "catch.h"
 #include "scene/small_scene.h"
 
@@ -56,11 +58,24 @@ TEST_CASE("a player plays, pauses, steps once and begins again") {
 
 TEST_CASE("fields come when they are asked for, also at rest") {
   auto p = start(false);
-  CHECK_FALSE(p->latest()->has_fields);
+  CHECK(p->latest()->values == nullptr);
   const auto shown = wait_for(
-      *p, [](const Shown& s) { return s.has_fields; }, true);
-  CHECK(shown->frame.fields.size() >= 4);
+      *p, [](const Shown& s) { return s.values != nullptr; }, true);
+  CHECK(shown->values->size() >= 4);
   CHECK(shown->step == 0);
+  // Where it comes to rest, the values are those of the state.
+  REQUIRE(p->push(plain(Action::play)).ok());
+  wait_for(
+      *p, [](const Shown& s) { return s.step > 20; }, true);
+  REQUIRE(p->push(plain(Action::pause)).ok());
+  wait_for(
+      *p, [](const Shown& s) { return !s.playing; }, true);
+  const BodyFields fields = p->simulation().fields_now(0);
+  const double most = *std::max_element(fields.node_pressure.begin(), fields.node_pressure.end());
+  wait_for(
+      *p,
+      [&](const Shown& s) { return *std::max_element((*s.values)[1].begin(), (*s.values)[1].end()) == most; },
+      true);
 }
 
 TEST_CASE("who looks on seldom sees the newest picture, and nothing has waited") {
