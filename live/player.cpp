@@ -67,7 +67,7 @@ Result<std::unique_ptr<Player>> Player::start(SceneDef scene, SimulationOptions 
   if (!simulation) return simulation.failure();
   player->simulation_ = std::move(simulation).value();
   player->latest_ = std::make_shared<Shown>();
-  player->publish(false);
+  player->publish(true, false, false);
   player->thread_ = std::thread([self] { self->run(); });
   return player;
 }
@@ -123,11 +123,11 @@ ShownPtr Player::latest() const {
 
 ShownPtr Player::wait(std::uint64_t after, bool fields, milliseconds timeout) {
   std::unique_lock lock(mutex_);
-  if (fields) {
-    const bool waited = latest_->values != nullptr;
-    fields_wanted_ = Clock::now();
-    if (!waited) work_.notify_all();
-  }
+  const auto now = Clock::now();
+  const bool news = now - asked_ > kForgotten || (fields && !latest_->values);
+  asked_ = now;
+  if (fields) fields_wanted_ = now;
+  if (news) work_.notify_all();
   const auto there = [&] { return over_ || (latest_->number > after && (latest_->values || !fields)); };
   news_.wait_for(lock, timeout, there);
   return latest_;
@@ -168,26 +168,30 @@ bool Player::lacks(bool fields) const {
 void Player::live() {
   while (true) {
     if (!work()) return;
-    bool fields = false;
+    bool watched = false, fields = false;
     {
       std::unique_lock lock(mutex_);
       const auto now = Clock::now();
+      watched = now - asked_ < kForgotten;
       fields = now - fields_wanted_ < kForgotten;
       // What has changed is shown as soon as a picture is due, and what moves goes on when its time has come.
       Clock::time_point when = now + kIdle;
-      if (fresh_) when = std::min(when, picture_.next());
+      if (fresh_) when = std::min(when, watched ? picture_.next() : unseen_.next());
       if (lacks(fields)) when = std::min(when, latest_->values && moves() ? fields_.next() : now);
       if (moves()) when = std::min(when, single_ ? now : next_step_);
       if (when > now) {
         work_.wait_until(lock, when, [&] {
-          const bool newly = !fields && Clock::now() - fields_wanted_ < kForgotten;
+          const auto then = Clock::now();
+          const bool newly =
+              (!watched && then - asked_ < kForgotten) || (!fields && then - fields_wanted_ < kForgotten);
           return over_ || !waiting_.empty() || newly;
         });
         continue;
       }
     }
-    if (moves() && (single_ || Clock::now() >= next_step_)) make_step();
-    publish(fields);
+    const bool steps = moves() && (single_ || Clock::now() >= next_step_);
+    if (steps) make_step();
+    if (publish(watched, fields, steps)) answers_ = answers_ && !steps && moves();
   }
 }
 
@@ -229,7 +233,7 @@ void Player::obey(const Command& c) {
       if (simulation_->apply(c)) stuck_ = false;
       if (c.action == Action::reset) tempo_.forget();
   }
-  fresh_ = true;
+  fresh_ = answers_ = true;
 }
 
 void Player::make_step() {
@@ -251,13 +255,15 @@ void Turn::done(Clock::time_point begin, Clock::time_point end) {
   next_ = begin + seconds_of<Clock>(std::max(1 / most_per_s_, cost_ / share_));
 }
 
-void Player::publish(bool fields) {
+bool Player::publish(bool watched, bool fields, bool stepped) {
   const auto begin = Clock::now();
   // Values that somebody waits for are made at once, others when their turn has come, and the last ones at
   // rest.
   const bool first = fields && !latest_->values;
   const bool anew = first || (fields && (fresh_ || values_old_) && (fields_.due(begin) || !moves()));
-  if (!anew && !(fresh_ && picture_.due(begin))) return;
+  // What a command has done is shown behind the next step, out of turn.
+  const bool due = (answers_ && stepped) || (watched ? picture_.due(begin) : unseen_.due(begin));
+  if (!anew && !(fresh_ && due)) return false;
   auto shown = std::make_shared<Shown>();
   static_cast<Picture&>(*shown) = simulation_->picture(anew);
   if (anew) {
@@ -276,11 +282,13 @@ void Player::publish(bool fields) {
   shown->per_s = tempo_.per_s(begin);
   fresh_ = false;
   if (!anew) picture_.done(begin, Clock::now());
+  unseen_.done(begin, Clock::now());
   {
     const std::lock_guard lock(mutex_);
     latest_ = std::move(shown);
   }
   news_.notify_all();
+  return true;
 }
 
 }  // namespace isochor::live

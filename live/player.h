@@ -92,7 +92,8 @@ class Player {
   bool work();  // commands; false: it is over
   void obey(const Command& command);
   void make_step();
-  void publish(bool fields);
+  // False: its turn has not come.
+  bool publish(bool watched, bool fields, bool stepped);
   bool lacks(bool fields) const;  // what is shown, under the mutex
   double period() const;
   bool moves() const;
@@ -105,7 +106,7 @@ class Player {
   std::deque<Command> waiting_;
   ShownPtr latest_;
   bool over_ = false;
-  Clock::time_point fields_wanted_{};  // last asked for
+  Clock::time_point asked_{}, fields_wanted_{};  // the last time, for a picture and for fields
   // Asked by steps from any thread.
   std::atomic<bool> interrupt_{false};
   // Of the thread.
@@ -113,8 +114,8 @@ class Player {
   double speed_ = 1;
   Tempo tempo_;
   Clock::time_point next_step_{};
-  Turn picture_{0.015, 60}, fields_{0.02, 15};
-  bool values_old_ = false;
+  Turn picture_{0.015, 40}, fields_{0.012, 15}, unseen_{0.01, 2};
+  bool values_old_ = false, answers_ = false;  // answers_: the next picture shows what a command has done
   std::uint64_t number_ = 0;
   Result<void> ended_;
 };

@@ -4,11 +4,13 @@
 //
 //   node viewer/measure_live.mjs [--size 1280x800] [--slides N] [--seconds N] -- SCENE [options of isochor live]
 //
-// What the server costs is the step rate "as fast as it can" of the world by itself against that with a viewer that
-// takes every picture with a field of stresses, in turns, three times each. That viewer is this script, which draws
-// nothing: a browser that draws by the processor takes more of the machine than any server. The tool is build/isochor, or
+// What the server costs is the processor time of the whole process for a step, "as fast as it can", without viewers against
+// that with one who takes every picture with a field of stresses, in turns, five times each: on a quiet machine that is
+// what the step rate loses, and on a busy one it still says so. That viewer is this script, which draws nothing: a browser
+// that draws by the processor takes more of the machine than any server. The tool is build/isochor, or
 // $ISOCHOR.
 import { spawn } from 'node:child_process';
+import { readFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { Browser, MISSING, findChromium } from './chromium.mjs';
@@ -48,7 +50,14 @@ async function start() {
 const pause = (s) => new Promise((done) => setTimeout(done, 1000 * s));
 const median = (list) => [...list].sort((a, b) => a - b)[Math.floor(list.length / 2)];
 
-/** Steps a second with and without a viewer who takes all that there is. */
+/** Processor time of a process so far [s]. */
+function spent(pid) {
+  const text = readFileSync(`/proc/${pid}/stat`, 'utf8');
+  const fields = text.slice(text.lastIndexOf(')') + 2).split(' ');
+  return (Number(fields[11]) + Number(fields[12])) / 100;
+}
+
+/** Steps a second, and processor time a step, with and without a viewer who takes all that there is. */
 async function cost() {
   const { server, link } = await start();
   const url = new URL(link);
@@ -66,7 +75,7 @@ async function cost() {
   const rate = async (watched) => {
     // Fields that nobody asks for are left out after a while.
     await pause(4);
-    const [first, from] = [await picture(''), performance.now()];
+    const [first, from, cpu] = [await picture(''), performance.now(), spent(server.pid)];
     let pictures = 0;
     while (watched && performance.now() - from < 1000 * seconds) {
       await picture('von_mises');
@@ -74,17 +83,18 @@ async function cost() {
     }
     if (!watched) await pause(seconds);
     const last = await picture('');
-    const took = (performance.now() - from) / 1000;
-    return { steps: (last.step - first.step) / took, pictures: pictures / took };
+    const took = (performance.now() - from) / 1000, steps = last.step - first.step;
+    return { steps: steps / took, pictures: pictures / took, each: (1000 * (spent(server.pid) - cpu)) / steps };
   };
   await pause(2);
   const alone = [], watched = [];
-  for (let i = 0; i < 3; ++i) {
+  for (let i = 0; i < 5; ++i) {
     alone.push(await rate(false));
     watched.push(await rate(true));
   }
   server.kill('SIGINT');
-  return { alone: median(alone.map((r) => r.steps)), watched: median(watched.map((r) => r.steps)), pictures: median(watched.map((r) => r.pictures)) };
+  const of = (rounds) => Object.fromEntries(['steps', 'pictures', 'each'].map((key) => [key, median(rounds.map((r) => r[key]))]));
+  return { alone: of(alone), watched: of(watched) };
 }
 
 /** From the event of the slider to the end of the drawing of a picture that has its value. */
@@ -105,7 +115,7 @@ const SLIDE = (index, t) => `new Promise((done) => {
   };
 })`;
 
-const { alone, watched, pictures: taken } = await cost();
+const { alone, watched } = await cost();
 const { server, link } = await start();
 const browser = await Browser.launch();
 try {
@@ -128,8 +138,8 @@ try {
   console.log(`slider     ${median(times).toFixed(0)} ms to a changed picture (median of ${slides}; the slowest ${Math.max(...times).toFixed(0)} ms)`);
   console.log(`pictures   ${rate.pictures.toFixed(1)} a second of ${rate.triangles} triangles, ${width} x ${height}, quality ${rate.quality}, while the world makes `
     + `${rate.steps.toFixed(1)} steps a second of ${rate.ms.toFixed(1)} ms`);
-  console.log(`server     ${alone.toFixed(1)} steps a second alone, ${watched.toFixed(1)} with a viewer who takes ${taken.toFixed(1)} pictures a second: `
-    + `${(100 * (1 - watched / alone)).toFixed(1)} %`);
+  console.log(`server     ${alone.each.toFixed(2)} ms of processor time a step alone, ${watched.each.toFixed(2)} with a viewer who takes ${watched.pictures.toFixed(1)} pictures `
+    + `a second: ${(100 * (watched.each / alone.each - 1)).toFixed(1)} % (${alone.steps.toFixed(0)} and ${watched.steps.toFixed(0)} steps a second)`);
 } finally {
   await browser.close();
   server.kill('SIGINT');

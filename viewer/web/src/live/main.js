@@ -202,34 +202,35 @@ class LiveViewer extends Display {
   }
 }
 
-const nextPicture = () => new Promise((done) => {
+const nextFrame = () => new Promise((done) => {
   const late = setTimeout(done, HIDDEN);
   requestAnimationFrame(() => { clearTimeout(late); done(); });
 });
 
-/** Asks for pictures until the scene is another one or the server gone. */
+/** When the last picture is on the screen: those that are drawn in advance would show what has been. */
+async function nextPicture(stage) {
+  const end = performance.now() + HIDDEN;
+  do await nextFrame();
+  while (stage?.measured && performance.now() < end);
+}
+
+/** Asks for pictures until the scene is another one or the server gone: each when it is about to be drawn. */
 async function look(viewer, connection) {
   let after = 0;
-  const ask = () => {
+  for (;;) {
+    await nextPicture(viewer.stage);
     const field = viewer.asked;
     const asked = connection.picture(after, field);
-    asked.catch(() => {}); // whoever waits for it hears of it
-    return { field, asked };
-  };
-  let next = ask();
-  for (;;) {
     // A field that was chosen meanwhile is asked for at once.
-    const hurry = new Promise((done) => { connection.hurry = () => { if (next.field !== viewer.asked) done(null); }; });
-    const message = await Promise.race([next.asked, hurry]);
+    const hurry = new Promise((done) => { connection.hurry = () => { if (field !== viewer.asked) done(null); }; });
+    const message = await Promise.race([asked, hurry]);
     if (message === null) {
+      asked.catch(() => {}); // nobody waits for it any more
       after = 0;
-      next = ask();
       continue;
     }
     const frame = viewer.run.read(message);
     after = frame.info.number;
-    await nextPicture();
-    next = ask();
     viewer.show(frame);
   }
 }
