@@ -102,7 +102,7 @@ double spring_for(const SceneDef& scene, double extent) {
       if (young > 0) softest = softest > 0 ? std::min(softest, young) : young;
     }
   }
-  return 0.03 * extent * (softest > 0 ? softest : 1e5);
+  return 0.006 * extent * (softest > 0 ? softest : 1e5);
 }
 
 Dials::Dials(const SceneDef& scene, double stiffness) : scene_(scene), changed_(scene) {

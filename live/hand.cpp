@@ -10,7 +10,7 @@ namespace {
 constexpr double kPatch = 0.03;   // radius of what fingers hold, over the extent of the scene
 constexpr double kSphere = 0.08;  // radius of a sphere that pushes, likewise
 constexpr double kTravel = 0.03;  // the most that a handle moves in a step, likewise
-constexpr double kPin = 30;       // stiffness of a pin over that of a pull
+constexpr double kPin = 150;      // stiffness of a pin over that of a pull
 
 double length(const Vec3& v) {
   return std::sqrt(dot(v, v));

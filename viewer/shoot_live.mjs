@@ -3,7 +3,7 @@
 //
 //   node viewer/shoot_live.mjs OUT.png [--size 1600x1000] [--dark] [--stage] [--steps N] [--pull X,Y:DX,DY] [key=value ...] -- SCENE [options of isochor live]
 //
-// X,Y and DX,DY are parts of the width and height of the picture. Without --steps it waits for balance (statics). --stage:
+// X,Y and DX,DY are parts of the width and height of the view; the nearest point of a body is taken. Without --steps it waits for balance (statics). --stage:
 // the 3D view alone. The key=value pairs are the options of the page, as for shoot.mjs. The tool is build/isochor, or
 // $ISOCHOR.
 import { spawn } from 'node:child_process';
@@ -57,14 +57,29 @@ try {
   if (!options.hash.some((text) => text.startsWith('camera='))) await page.evaluate('isochorLive.open(isochorLive.frame)');
   if (options.pull) {
     const box = await page.evaluate('(({ left, top, width, height }) => ({ left, top, width, height }))(isochorLive.stage.canvas.getBoundingClientRect())');
-    const [x, y, dx, dy] = options.pull;
+    const [wantedX, wantedY, dx, dy] = options.pull;
+    // The point of a body that is nearest to the one asked for.
+    const found = await page.evaluate(`(() => {
+      for (let r = 0; r < 0.5; r += 0.01) for (let k = 0; k < 24; ++k) {
+        const [x, y] = [${wantedX} + r * Math.cos(k * Math.PI / 12), ${wantedY} + r * Math.sin(k * Math.PI / 12)];
+        const at = { clientX: ${box.left} + x * ${box.width}, clientY: ${box.top} + y * ${box.height} };
+        if (document.elementFromPoint(at.clientX, at.clientY) === isochorLive.stage.canvas && isochorLive.pickAt(at)) return [x, y];
+      }
+      return null;
+    })()`);
+    if (!found) throw new Error('no body is near the point to pull at');
+    const [x, y] = found;
     const mouse = (type, s) => page.send('Input.dispatchMouseEvent', {
       type, x: box.left + (x + s * dx) * box.width, y: box.top + (y + s * dy) * box.height, button: 'left', buttons: 1, clickCount: 1,
     });
     await mouse('mousePressed', 0);
     await page.waitFor('isochorLive.frame.info.handles.length === 1');
-    for (const s of [0.25, 0.5, 0.75, 1]) await mouse('mouseMoved', s);
-    await page.waitFor('isochorLive.frame.info.handles[0].force > 0', 600000);
+    const to = 'isochorLive.frame.info.handles[0].to.join()';
+    for (const s of [0.25, 0.5, 0.75, 1]) {
+      const before = await page.evaluate(to);
+      await mouse('mouseMoved', s);
+      await page.waitFor(`${to} !== '${before}'`, 600000);
+    }
     await there();
   }
   await page.evaluate('isochorLive.stage.draw(), isochorLive.hand.place()');
