@@ -109,12 +109,7 @@ class LiveViewer extends Display {
       if (stage.playing !== info.playing) stage.setPlaying(info.playing);
     }
     this.showField();
-    // The numbers beside the colors follow them, but not faster than anybody reads, nor while somebody types.
-    const now = performance.now();
-    if ((!known || now - (this.rangeSaid ?? 0) > 500) && !document.activeElement?.matches('.bounds input')) {
-      this.rangeSaid = now;
-      this.controls.showRange();
-    }
+    this.showRangeSoon(known ? 400 : 0);
     this.controls.update(frame);
     this.plots.add(info.time, info.measures);
     this.tell(info);
@@ -123,6 +118,16 @@ class LiveViewer extends Display {
     this.hand?.place();
     this.cursor?.later();
     ++this.pictures;
+  }
+
+  /** The numbers beside the colors follow them, but not faster than anybody reads, nor while somebody types. */
+  showRangeSoon(wait) {
+    if (this.rangeTimer && wait > 0) return;
+    clearTimeout(this.rangeTimer);
+    this.rangeTimer = setTimeout(() => {
+      this.rangeTimer = null;
+      if (!document.activeElement?.matches('.bounds input')) this.controls.showRange();
+    }, wait);
   }
 
   /** Values that have not come yet leave the picture as it is, but for the shape. */
