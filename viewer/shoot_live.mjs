@@ -82,6 +82,7 @@ try {
     }
     await there();
   }
+  await page.waitFor('!isochorLive.rangeTimer'); // the numbers beside the colors come a moment later
   await page.evaluate('isochorLive.stage.draw(), isochorLive.hand.place()');
   const clip = options.stage ? await page.evaluate('(({ x, y, width, height }) => ({ x, y, width, height }))(document.querySelector(".stage").getBoundingClientRect())') : undefined;
   writeFileSync(options.out, await page.picture({ clip }));
