@@ -163,6 +163,7 @@ Json picture_head(const Simulation& simulation, const Shown& shown, const Audien
                {"speed", shown.speed},
                {"stepMs", shown.step_ms},
                {"perSecond", shown.per_s},
+               {"spent", {shown.spent_on_steps, shown.spent_on_pictures}},
                {"dials", dials},
                {"measures", measures},
                {"handles", handles},

@@ -244,6 +244,7 @@ void Player::make_step() {
   next_step_ = std::max(next_step_, begin - seconds_of<Clock>(period())) + seconds_of<Clock>(period());
   const StepEnd end = simulation_->advance();
   if (end == StepEnd::failed) stuck_ = true;
+  spent_on_steps_ += duration<double>(Clock::now() - begin).count();
   if (end != StepEnd::interrupted)
     tempo_.step(Clock::now(), simulation_->seconds_of_step(), simulation_->time() - before);
   fresh_ = true;
@@ -280,6 +281,9 @@ bool Player::publish(bool watched, bool fields, bool stepped) {
   if (simulation_->dynamic() && playing_) shown->factor = tempo_.factor(begin);
   shown->step_ms = tempo_.step_ms();
   shown->per_s = tempo_.per_s(begin);
+  spent_on_pictures_ += duration<double>(Clock::now() - begin).count();
+  shown->spent_on_steps = spent_on_steps_;
+  shown->spent_on_pictures = spent_on_pictures_;
   fresh_ = false;
   if (!anew) picture_.done(begin, Clock::now());
   unseen_.done(begin, Clock::now());

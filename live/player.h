@@ -27,6 +27,8 @@ struct Shown : Picture {
   double speed = 1;               // the most that is made of real time
   std::optional<double> factor;   // simulated over real time, lately
   double step_ms = 0, per_s = 0;  // a step, and steps a second, lately
+  // Of the thread so far, for steps and for pictures [s].
+  double spent_on_steps = 0, spent_on_pictures = 0;
 };
 using ShownPtr = std::shared_ptr<const Shown>;
 
@@ -111,7 +113,7 @@ class Player {
   std::atomic<bool> interrupt_{false};
   // Of the thread.
   bool playing_, single_ = false, fresh_ = true, stuck_ = false;
-  double speed_ = 1;
+  double speed_ = 1, spent_on_steps_ = 0, spent_on_pictures_ = 0;
   Tempo tempo_;
   Clock::time_point next_step_{};
   Turn picture_{0.015, 40}, fields_{0.012, 15}, unseen_{0.01, 2};

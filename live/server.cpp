@@ -129,7 +129,11 @@ Result<std::unique_ptr<Server>> Server::start(Hub& hub, const ServerOptions& opt
   }
   impl->names = std::make_unique<Names>(options.host, impl->port);
   Impl* self = impl.get();
-  impl->thread = std::thread([self] { self->http.listen_after_bind(); });
+  impl->thread = std::thread([self] {
+    // Its helpers inherit the name, by which viewer/measure_live.mjs knows what they cost.
+    pthread_setname_np(pthread_self(), "isochor-http");
+    self->http.listen_after_bind();
+  });
   return std::unique_ptr<Server>(new Server(std::move(impl)));
 }
 

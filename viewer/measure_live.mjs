@@ -4,13 +4,12 @@
 //
 //   node viewer/measure_live.mjs [--size 1280x800] [--slides N] [--seconds N] -- SCENE [options of isochor live]
 //
-// What the server costs is the processor time of the whole process for a step, "as fast as it can", without viewers against
-// that with one who takes every picture with a field of stresses, in turns, five times each: on a quiet machine that is
-// what the step rate loses, and on a busy one it still says so. That viewer is this script, which draws nothing: a browser
-// that draws by the processor takes more of the machine than any server. The tool is build/isochor, or
-// $ISOCHOR.
+// What the server costs a step is the time that the world's thread spends on pictures over that on steps, and the processor
+// time of the threads that talk to viewers over that of all others: shares, which a busy machine stretches alike. The
+// viewer takes every picture with a field of stresses, "as fast as it can", and is this script, which draws nothing: a
+// browser that draws by the processor takes more of the machine than any server. The tool is build/isochor, or $ISOCHOR.
 import { spawn } from 'node:child_process';
-import { readFileSync } from 'node:fs';
+import { readFileSync, readdirSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { Browser, MISSING, findChromium } from './chromium.mjs';
@@ -50,14 +49,17 @@ async function start() {
 const pause = (s) => new Promise((done) => setTimeout(done, 1000 * s));
 const median = (list) => [...list].sort((a, b) => a - b)[Math.floor(list.length / 2)];
 
-/** Processor time of a process so far [s]. */
+/** Processor time so far of the threads that talk to viewers, and of all others [s]. */
 function spent(pid) {
-  const text = readFileSync(`/proc/${pid}/stat`, 'utf8');
-  const fields = text.slice(text.lastIndexOf(')') + 2).split(' ');
-  return (Number(fields[11]) + Number(fields[12])) / 100;
+  const out = { http: 0, other: 0 };
+  for (const task of readdirSync(`/proc/${pid}/task`)) {
+    const read = (file) => readFileSync(`/proc/${pid}/task/${task}/${file}`, 'utf8');
+    try { out[read('comm').trim() === 'isochor-http' ? 'http' : 'other'] += Number(read('schedstat').split(' ')[0]) / 1e9; } catch { /* it has ended */ }
+  }
+  return out;
 }
 
-/** Steps a second, and processor time a step, with and without a viewer who takes all that there is. */
+/** What a viewer who takes all that there is costs. */
 async function cost() {
   const { server, link } = await start();
   const url = new URL(link);
@@ -72,29 +74,18 @@ async function cost() {
     return head;
   };
   await ask('/command', { method: 'POST', body: JSON.stringify({ do: 'speed', value: 1000 }) });
-  const rate = async (watched) => {
-    // Fields that nobody asks for are left out after a while.
-    await pause(4);
-    const [first, from, cpu] = [await picture(''), performance.now(), spent(server.pid)];
-    let pictures = 0;
-    while (watched && performance.now() - from < 1000 * seconds) {
-      await picture('von_mises');
-      ++pictures;
-    }
-    if (!watched) await pause(seconds);
-    const last = await picture('');
-    const took = (performance.now() - from) / 1000, steps = last.step - first.step;
-    return { steps: steps / took, pictures: pictures / took, each: (1000 * (spent(server.pid) - cpu)) / steps };
-  };
   await pause(2);
-  const alone = [], watched = [];
-  for (let i = 0; i < 5; ++i) {
-    alone.push(await rate(false));
-    watched.push(await rate(true));
-  }
+  await picture('von_mises');
+  const [first, before, from] = [await picture('von_mises'), spent(server.pid), performance.now()];
+  let last = first, pictures = 0;
+  for (; performance.now() - from < 3000 * seconds; ++pictures) last = await picture('von_mises');
+  const took = (performance.now() - from) / 1000, after = spent(server.pid);
   server.kill('SIGINT');
-  const of = (rounds) => Object.fromEntries(['steps', 'pictures', 'each'].map((key) => [key, median(rounds.map((r) => r[key]))]));
-  return { alone: of(alone), watched: of(watched) };
+  return {
+    pictures: pictures / took, steps: (last.step - first.step) / took,
+    made: (last.spent[1] - first.spent[1]) / (last.spent[0] - first.spent[0]),
+    sent: (after.http - before.http) / (after.other - before.other),
+  };
 }
 
 /** From the event of the slider to the end of the drawing of a picture that has its value. */
@@ -115,7 +106,7 @@ const SLIDE = (index, t) => `new Promise((done) => {
   };
 })`;
 
-const { alone, watched } = await cost();
+const costs = await cost();
 const { server, link } = await start();
 const browser = await Browser.launch();
 try {
@@ -138,8 +129,8 @@ try {
   console.log(`slider     ${median(times).toFixed(0)} ms to a changed picture (median of ${slides}; the slowest ${Math.max(...times).toFixed(0)} ms)`);
   console.log(`pictures   ${rate.pictures.toFixed(1)} a second of ${rate.triangles} triangles, ${width} x ${height}, quality ${rate.quality}, while the world makes `
     + `${rate.steps.toFixed(1)} steps a second of ${rate.ms.toFixed(1)} ms`);
-  console.log(`server     ${alone.each.toFixed(2)} ms of processor time a step alone, ${watched.each.toFixed(2)} with a viewer who takes ${watched.pictures.toFixed(1)} pictures `
-    + `a second: ${(100 * (watched.each / alone.each - 1)).toFixed(1)} % (${alone.steps.toFixed(0)} and ${watched.steps.toFixed(0)} steps a second)`);
+  console.log(`server     ${(100 * costs.made).toFixed(1)} % of the steps for making and ${(100 * costs.sent).toFixed(1)} % for sending ${costs.pictures.toFixed(1)} pictures a second, `
+    + `${costs.steps.toFixed(0)} steps a second`);
 } finally {
   await browser.close();
   server.kill('SIGINT');
