@@ -19,8 +19,8 @@ enum Exit : int {
   out_of_budget = 4,
   not_written = 5,
   out_of_memory = 6,
-  no_port = 7,       // live: the address cannot be listened on
-  unavailable = 8,   // live: not in this build
+  no_port = 7,        // live: the address cannot be listened on
+  unavailable = 8,    // live: not in this build
   interrupted = 130,  // as shells report SIGINT
 };
 

@@ -98,8 +98,7 @@ int live(const LiveArguments& a) {
   const auto ended = player.value()->stop();
   server.value()->stop();
   if (!ended) return refuse(by_itself ? out_of_memory : not_written, ended.error());
-  if (!recorded_in.empty())
-    std::fprintf(stderr, "isochor: the recording is in %s/\n", recorded_in.c_str());
+  if (!recorded_in.empty()) std::fprintf(stderr, "isochor: the recording is in %s/\n", recorded_in.c_str());
   if (hub.refused() > 0)
     std::fprintf(stderr, "isochor: %llu messages were refused\n",
                  static_cast<unsigned long long>(hub.refused()));

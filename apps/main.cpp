@@ -113,7 +113,8 @@ void add_live(CLI::App& top, app::LiveArguments& a) {
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
-  c->add_option("--host", a.host, "Address to listen on; others than this machine can reach what is no loopback")
+  c->add_option("--host", a.host,
+                "Address to listen on; others than this machine can reach what is no loopback")
       ->capture_default_str();
   c->add_option("--port", a.port, "Port; default: one that is free")->check(CLI::Range(0, 65535));
   c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
@@ -122,7 +123,8 @@ void add_live(CLI::App& top, app::LiveArguments& a) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   c->add_option("--out", a.folder, "Folder of recordings; default out/live_NAME")->type_name("DIR");
-  c->add_flag("--dynamic", a.dynamic, "Statics as a motion, in steps of 1/60 s: the load factor becomes seconds");
+  c->add_flag("--dynamic", a.dynamic,
+              "Statics as a motion, in steps of 1/60 s: the load factor becomes seconds");
   c->add_flag("--record", a.record, "Record from the beginning, with the outputs of `isochor run`");
   c->add_flag("--paused", a.paused, "Begin at rest");
   c->add_flag("--readonly", a.readonly, "Viewers may look on and change nothing");

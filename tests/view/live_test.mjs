@@ -129,7 +129,7 @@ const tests = {
     const page = await viewShared();
     await page.waitFor('isochorLive.frame.info.step > 5');
     assert.equal(await info(page, 'playing'), true);
-    assert.match(await page.evaluate(`isochorLive.controls.pace.textContent`), /× real time, [\d.]+ ms a step/);
+    await page.waitFor(`/× real time, [\\d.]+ ms a step/.test(isochorLive.controls.pace.textContent)`);
     await page.key(' ');
     await page.waitFor('!isochorLive.frame.info.playing');
     const step = await info(page, 'step');
