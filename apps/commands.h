@@ -19,6 +19,8 @@ enum Exit : int {
   out_of_budget = 4,
   not_written = 5,
   out_of_memory = 6,
+  no_port = 7,        // live: the address cannot be listened on
+  unavailable = 8,    // live: not in this build
   interrupted = 130,  // as shells report SIGINT
 };
 
@@ -69,7 +71,23 @@ struct ViewArguments {
   bool quiet_browser = false;  // only say where it is
 };
 
+struct LiveArguments {
+  std::string scene = "finger";
+  std::vector<std::string> overrides;
+  std::string host = "127.0.0.1";
+  std::string folder;  // of recordings; empty: out/live_NAME
+  int port = 0, threads = 0;
+  double step_limit = 60;  // [s]
+  bool dynamic = false, readonly = false, paused = false, record = false, quiet_browser = false;
+};
+
+// A scene of the library by its name, or the one of a file.
+Result<SceneDef> find_or_read(const std::string& name, const std::vector<std::string>& overrides);
+// False where no browser could be started.
+bool open_in_browser(const std::string& address);
+
 int run(const RunArguments& arguments);
+int live(const LiveArguments& arguments);
 int view(const ViewArguments& arguments);
 int study(const StudyArguments& arguments);
 int fit_laws(const FitArguments& arguments);

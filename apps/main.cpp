@@ -1,4 +1,4 @@
-// isochor: list, run, view, check and show scenes, and studies, from the command line.
+// isochor: list, run, live, view, check and show scenes, and studies, from the command line.
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
@@ -99,6 +99,39 @@ void add_view(CLI::App& top, app::ViewArguments& a) {
   c->add_flag("--no-browser", a.quiet_browser, "Only print where the page is");
 }
 
+constexpr const char* kLiveFooter =
+    "Exit codes: 0 ended by Ctrl-C, 1 internal error, 2 bad input, 5 a recording cannot be written,\n"
+    "6 out of memory, 7 the port is in use or there is no such address, 8 live is not in this build.\n"
+    "Example: isochor live finger --dynamic --set bodies[0].mesh.file=meshes/finger_small.msh";
+
+void add_live(CLI::App& top, app::LiveArguments& a) {
+  CLI::App* c = top.add_subcommand("live", "Run a scene in the browser, where it answers to the hand");
+  c->add_option("scene", a.scene, "Name of a scene (see `isochor list`) or a file that ends in .json")
+      ->capture_default_str();
+  c->add_option("--set", a.overrides, "Change a value of the scene: path=value")
+      ->type_name("PATH=VALUE")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  c->add_option("--host", a.host,
+                "Address to listen on; others than this machine can reach what is no loopback")
+      ->capture_default_str();
+  c->add_option("--port", a.port, "Port; default: one that is free")->check(CLI::Range(0, 65535));
+  c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
+  c->add_option("--step-limit", a.step_limit, "Wall time after which a step is given up")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  c->add_option("--out", a.folder, "Folder of recordings; default out/live_NAME")->type_name("DIR");
+  c->add_flag("--dynamic", a.dynamic,
+              "Statics as a motion, in steps of 1/60 s: the load factor becomes seconds");
+  c->add_flag("--record", a.record, "Record from the beginning, with the outputs of `isochor run`");
+  c->add_flag("--paused", a.paused, "Begin at rest");
+  c->add_flag("--readonly", a.readonly, "Viewers may look on and change nothing");
+  c->add_flag("--no-browser", a.quiet_browser, "Only print the link");
+  c->footer(kLiveFooter);
+}
+
 int dispatch(int argc, char** argv) {
   CLI::App top{"Isochor: soft incompressible bodies, pneumatic robots at Poisson's ratio 0.5"};
   top.name("isochor");
@@ -107,6 +140,7 @@ int dispatch(int argc, char** argv) {
   app::StudyArguments study;
   app::ViewArguments view;
   app::FitArguments fit;
+  app::LiveArguments live;
   bool json = false;
   double scale = 1;
   std::vector<std::string> meshes, overrides;
@@ -116,6 +150,7 @@ int dispatch(int argc, char** argv) {
   add_run(top, run);
   add_study(top, study);
   add_view(top, view);
+  add_live(top, live);
   add_fit(top, fit);
   CLI::App* check =
       top.add_subcommand("check", "Check mesh files: counts and findings; exit 2 if one is not usable");
@@ -152,6 +187,7 @@ int dispatch(int argc, char** argv) {
   if (top.got_subcommand("fit")) return app::fit_laws(fit);
   if (top.got_subcommand("study")) return app::study(study);
   if (top.got_subcommand("view")) return app::view(view);
+  if (top.got_subcommand("live")) return app::live(live);
   return app::run(run);
 }
 

@@ -32,6 +32,12 @@ std::string shell_word(const std::string& text) {
 
 }  // namespace
 
+bool open_in_browser(const std::string& address) {
+  if (!has_display()) return false;
+  const std::string command = "xdg-open " + shell_word(address) + " >/dev/null 2>&1 &";
+  return std::system(command.c_str()) == 0;
+}
+
 int view(const ViewArguments& a) {
   std::error_code code;
   if (!std::filesystem::is_directory(a.folder, code)) {
@@ -50,8 +56,7 @@ int view(const ViewArguments& a) {
   }
   std::printf("%s\n", page.c_str());
   if (a.quiet_browser || !has_display()) return success;
-  const std::string command = "xdg-open " + shell_word(page) + " >/dev/null 2>&1 &";
-  if (std::system(command.c_str()) != 0)
+  if (!open_in_browser(page))
     std::fprintf(stderr, "isochor: view: no browser could be started; open the file above in one\n");
   return success;
 }

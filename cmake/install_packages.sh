@@ -3,7 +3,7 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build ccache libeigen3-dev libsuitesparse-dev libmumps-seq-dev libmetis-dev
-  libopenblas-dev libtbb-dev catch2 nlohmann-json3-dev libcli11-dev libbenchmark-dev libpugixml-dev zlib1g-dev libceres-dev
+  libopenblas-dev libtbb-dev catch2 nlohmann-json3-dev libcli11-dev libbenchmark-dev libpugixml-dev zlib1g-dev libceres-dev libcpp-httplib-dev
   binutils git ca-certificates
   python3-dev pybind11-dev python3-numpy python3-pytest python3-meshio python3-venv python3-pip)
 # The results page is bundled by node; Chromium takes its pictures and runs its tests.

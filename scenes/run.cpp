@@ -9,12 +9,10 @@
 #include <thread>
 
 #include "engine/base/text.h"
-#include "scenes/contact_watch.h"
 #include "scenes/law_limits.h"
 #include "scenes/outputs.h"
-#include "scenes/probes.h"
 #include "scenes/scene_file.h"
-#include "scenes/step_measures.h"
+#include "scenes/step_recorder.h"
 
 namespace isochor {
 
@@ -31,10 +29,14 @@ class Run {
  public:
   Run(const SceneDef& scene, const RunOptions& options, BuiltScene& built, RunResult& result,
       Clock::time_point start)
-      : scene_(scene), options_(options), built_(built), result_(result), start_(start) {}
+      : scene_(scene),
+        options_(options),
+        built_(built),
+        result_(result),
+        start_(start),
+        recorder_(scene, built) {}
 
   void describe();
-  void locate_probes();
   // Takes over where an earlier run was.
   Result<void> resume(const RunCheckpoint& checkpoint);
   void march(RunOutputs* outputs);
@@ -58,8 +60,7 @@ class Run {
   BuiltScene& built_;
   RunResult& result_;
   Clock::time_point start_;
-  std::vector<MaterialPoint> probes_;
-  ContactWatch contacts_;
+  StepRecorder recorder_;
   int doubtful_steps_ = 0;  // that ended with a warning
   bool interrupted_ = false;
   RunCheckpoint complete_;  // as the last complete step left the run, without its records
@@ -75,7 +76,7 @@ void Run::warn(const std::string& text) {
 
 // The first step that ended with a warning is told when it happens; here how many did, and how the run ends.
 void Run::warn_of_ends() {
-  for (const std::string& finding : contacts_.findings()) warn(finding);
+  for (const std::string& finding : recorder_.contact_findings()) warn(finding);
   if (doubtful_steps_ < 2) return;
   const StepRecord& last = result_.records.back();
   std::string text = std::to_string(doubtful_steps_) + " of " + std::to_string(last.step) +
@@ -88,63 +89,17 @@ void Run::describe() {
   const World& world = built_.world;
   result_.size = world.size();
   for (const BodyId id : built_.bodies) result_.elements += world.mesh(id).cell_count();
-  for (const auto& p : scene_.probes) result_.probes.push_back(p.name);
-  for (const auto& c : scene_.cavities) result_.cavities.push_back(c.name);
-  for (const auto& d : scene_.dirichlet) result_.supports.push_back(d.name);
+  name_records(scene_, result_);
   for (const auto& w : world.warnings()) warn(w);
-}
-
-void Run::locate_probes() {
-  for (const ProbeDef& p : scene_.probes) {
-    const BodyId id = built_.bodies[static_cast<std::size_t>(p.body)];
-    probes_.push_back(locate(built_.world.mesh(id), p.point));
-    if (probes_.back().distance == 0) continue;
-    const Vec3 X = built_.world.rest_positions(id)[static_cast<std::size_t>(probes_.back().nodes[0])];
-    warn("probe \"" + p.name + "\" lies in no cell; it follows the nearest node, at (" + number(X.x) + ", " +
-         number(X.y) + ", " + number(X.z) + "), " + number(probes_.back().distance) + " m away");
-  }
+  for (const auto& w : recorder_.warnings()) warn(w);
 }
 
 void Run::record(int step, const StepReport& report) {
   const World& world = built_.world;
-  StepRecord r;
-  r.step = step;
-  r.time = world.time();
-  r.work = report;
-  r.substeps = report.substeps;
-  r.rejected = report.rejected_substeps;
-  r.force_residual = report.force_residual;
-  r.row_residual = report.row_residual;
-  r.seconds = report.seconds.total;
-  r.constitutive_residual = world.constitutive_residual();
-  r.inverted_cells = report.inverted_cells;
-  r.warning = report.warning;
+  StepRecord r = recorder_.look(step, report);
   if (!r.warning.empty() && doubtful_steps_++ == 0)
     warn("step " + std::to_string(step) + ", t = " + number(world.time()) + ": " + r.warning);
-  for (std::size_t p = 0; p < probes_.size(); ++p) {
-    const BodyId id = built_.bodies[static_cast<std::size_t>(scene_.probes[p].body)];
-    r.probes.push_back(probes_[p].at(world.positions(id)) - probes_[p].at(world.rest_positions(id)));
-  }
-  r.cavities.resize(scene_.cavities.size());
-  const std::vector<Gauge> gauges = world.gauges();
-  contacts_.look(r.time, gauges);
-  for (const Gauge& g : gauges) {
-    const bool of_chamber = g.kind == "cavity" && (g.quantity == "pressure" || g.quantity == "volume");
-    if (!of_chamber) r.gauges.push_back(g);
-    for (std::size_t c = 0; c < scene_.cavities.size(); ++c) {
-      if (!of_chamber || g.effect != scene_.cavities[c].name) continue;
-      (g.quantity == "pressure" ? r.cavities[c].pressure : r.cavities[c].volume) = g.value;
-    }
-  }
-  if (scene_.analysis.path_step) {
-    r.gauges.push_back(
-        {"path", "equilibrium", "unstable directions", "", static_cast<double>(report.unstable_directions)});
-  }
-  record_measures(scene_, built_, r);
-  for (const EffectId id : built_.ids(dirichlet_kind)) {
-    const auto [force, moment] = world.reaction(id);
-    r.reactions.push_back({force, moment});
-  }
+  recorder_.measure(r);
   result_.records.push_back(std::move(r));
   result_.work += report;
   result_.state_hash = world.state_hash();
@@ -406,7 +361,6 @@ void run_into(const SceneDef& scene, const RunOptions& options, RunResult& resul
   }
   Run run(scene, options, built.value(), result, start);
   run.describe();
-  run.locate_probes();
   std::optional<RunOutputs> outputs;
   if (!options.folder.empty()) {
     outputs = open_outputs(scene, options, built.value(), run, checkpoint, result);

@@ -7,13 +7,9 @@
 
 #include "results_page.h"
 #include "scenes/outputs.h"
-#include "scenes/run_overlays.h"
+#include "scenes/page_shape.h"
 
 namespace isochor {
-
-// What bodies of a scene are colored by; the contact pressure where anything may touch.
-bool has_contact(const SceneDef& scene);
-std::vector<PageField> page_fields(const SceneDef& scene);
 
 class RunPage {
  public:
@@ -28,22 +24,11 @@ class RunPage {
   const std::string& failure() const { return failure_; }
 
  private:
-  // The node of each vertex; for the surface in a lattice its points instead.
-  struct Vertices {
-    std::vector<Index> nodes;
-    std::vector<EmbeddedPoint> points;
-  };
-  RunPage(ResultsRecorder recorder, std::vector<Vertices> vertices, RunOverlays overlays,
-          std::vector<Index> to_cut)
-      : recorder_(std::move(recorder)),
-        vertices_(std::move(vertices)),
-        overlays_(std::move(overlays)),
-        to_cut_(std::move(to_cut)) {}
+  RunPage(ResultsRecorder recorder, PageShape shape)
+      : recorder_(std::move(recorder)), shape_(std::move(shape)) {}
 
   ResultsRecorder recorder_;
-  std::vector<Vertices> vertices_;  // by body
-  RunOverlays overlays_;
-  std::vector<Index> to_cut_;           // triangles that cuts are to show the inside of
+  PageShape shape_;
   std::optional<PageSection> section_;  // of the last frame
   std::string failure_;
 };

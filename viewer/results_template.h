@@ -8,5 +8,6 @@ namespace isochor::page {
 // Empty when node and npm were missing at build time.
 const std::string& results_template();
 const std::string& charts_template();
+const std::string& live_template();
 
 }  // namespace isochor::page

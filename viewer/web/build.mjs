@@ -1,6 +1,6 @@
-// Bundles src/ into template HTMLs, one for runs and one for diagrams: styles and script inlined, nothing
+// Bundles src/ into template HTMLs, for runs, for diagrams and for scenes that run: styles and script inlined, nothing
 // fetched when they are opened.
-// Usage: node build.mjs [run.html [charts.html]]
+// Usage: node build.mjs [run.html [charts.html [live.html]]]
 import { build } from 'esbuild';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join, resolve } from 'node:path';
@@ -10,6 +10,7 @@ const here = dirname(fileURLToPath(import.meta.url));
 const pages = [
   { entry: 'src/main.js', libraries: ['three', 'uplot'], output: resolve(process.argv[2] ?? join(here, 'template.html')) },
   { entry: 'src/charts.js', libraries: ['uplot'], output: resolve(process.argv[3] ?? join(here, 'charts.html')) },
+  { entry: 'src/live/main.js', libraries: ['three', 'uplot'], output: resolve(process.argv[4] ?? join(here, 'live.html')) },
 ];
 
 for (const { entry, libraries, output } of pages) {

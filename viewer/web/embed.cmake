@@ -19,9 +19,9 @@ function(chunks_of file out)
   set(${out} "${chunks}" PARENT_SCOPE)
 endfunction()
 
-function(write_template_source results charts)
+function(write_template_source results charts live)
   set(text "#include \"results_template.h\"\n\nnamespace isochor::page {\n\n")
-  foreach(page results charts)
+  foreach(page results charts live)
     string(APPEND text "const std::string& ${page}_template() {\n  static const std::string html = []() {\n    std::string out;\n\
 ${${page}}    return out;\n  }();\n  return html;\n}\n\n")
   endforeach()
@@ -47,7 +47,7 @@ if(NPM AND NODE)
     endif()
   endif()
   if(NOT problem)
-    execute_process(COMMAND "${NODE}" build.mjs "${WORK_DIR}/template.html" "${WORK_DIR}/charts.html"
+    execute_process(COMMAND "${NODE}" build.mjs "${WORK_DIR}/template.html" "${WORK_DIR}/charts.html" "${WORK_DIR}/live.html"
                     WORKING_DIRECTORY "${WORK_DIR}" RESULT_VARIABLE status OUTPUT_VARIABLE log ERROR_VARIABLE log)
     if(NOT status EQUAL 0)
       message(FATAL_ERROR "The results page does not bundle:\n${log}")
@@ -57,7 +57,7 @@ endif()
 
 if(problem)
   message(WARNING "The results page is left out of this build: ${problem}")
-  write_template_source("" "")
+  write_template_source("" "" "")
   file(WRITE "${WORK_DIR}/missing.txt" "${problem}\n")  # makes the next configure try again
   return()
 endif()
@@ -65,4 +65,5 @@ file(REMOVE "${WORK_DIR}/missing.txt")
 
 chunks_of("${WORK_DIR}/template.html" results)
 chunks_of("${WORK_DIR}/charts.html" charts)
-write_template_source("${results}" "${charts}")
+chunks_of("${WORK_DIR}/live.html" live)
+write_template_source("${results}" "${charts}" "${live}")

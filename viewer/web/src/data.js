@@ -189,6 +189,9 @@ export class RunData {
     return out;
   }
 
+  /** How many values of a field in one frame are not finite. */
+  invalid(frame, field) { return field.kind === 'given' ? frame.info.ranges[field.index][2] : 0; }
+
   /** The fields of the run and the two that every run has. */
   fieldList() {
     const given = this.head.fields.map((f, index) => ({ ...f, kind: 'given', index }));
@@ -227,6 +230,12 @@ export class RunData {
     }
     this.ranges.set(key, out);
     return out;
+  }
+
+  /** Of the shadow: the lowest that anything gets to. */
+  groundHeight() {
+    const axis = this.head.up === 'y' ? 1 : 2;
+    return (this.head.box.low[axis] - this.center[axis]) * this.scale;
   }
 
   /** Where a cut across this axis opens, as a part of the extent of the run. */

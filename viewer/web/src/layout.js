@@ -5,6 +5,7 @@ import { chartScale } from './plots.js';
 
 const ICONS = {
   play: 'M8 5v14l11-7z', pause: 'M7 5h4v14H7zm6 0h4v14h-4z', back: 'M6 5h2v14H6zm3 7l9-7v14z', next: 'M16 5h2v14h-2zM6 5l9 7-9 7z',
+  reset: 'M12 5V1L7 6l5 5V7a5 5 0 1 1-5 5H5a7 7 0 1 0 7-7z',
 };
 
 export function icon(name) {

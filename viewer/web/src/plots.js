@@ -3,8 +3,8 @@ import uPlot from 'uplot';
 import { el } from './dom.js';
 import { significant, unitScale } from './numbers.js';
 
-const LIGHT = ['#1f6fb5', '#d1571b', '#2a8a57', '#a4388f', '#8a6d00', '#5b55c9', '#c22f4b', '#45707f'];
-const DARK = ['#6db3f2', '#f59a62', '#6ccb97', '#e08bd0', '#dcc04f', '#a9a4ff', '#f5839a', '#93bccb'];
+export const LIGHT = ['#1f6fb5', '#d1571b', '#2a8a57', '#a4388f', '#8a6d00', '#5b55c9', '#c22f4b', '#45707f'];
+export const DARK = ['#6db3f2', '#f59a62', '#6ccb97', '#e08bd0', '#dcc04f', '#a9a4ff', '#f5839a', '#93bccb'];
 const HEIGHT = 210;
 
 /** Series of one group, cut into charts of at most two units each. */

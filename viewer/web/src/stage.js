@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { Body } from './body.js';
+import { Ground } from './ground.js';
 import { Overlays } from './overlays.js';
 import { Pace, QUALITIES } from './pace.js';
 import { copyFragment, copyVertex } from './shaders.js';
@@ -62,7 +63,8 @@ export class Stage {
     this.body = new Body(run);
     this.overlays = new Overlays(run, host.querySelector('.labels'));
     this.triad = host.querySelector('.triad');
-    this.scene.add(this.body.object, this.overlays.object);
+    this.ground = new Ground(run, this.up, run.groundHeight?.() ?? null);
+    this.scene.add(this.body.object, this.overlays.object, this.ground.object);
     this.fitPoints = [run.rest];
     this.resize();
   }
@@ -163,6 +165,8 @@ export class Stage {
     up.transformDirection(this.camera.matrixWorldInverse);
     // All of it lies in a sphere of radius one.
     this.body.setInside(this.camera.position.length() < 1 + 2 * this.camera.near);
+    this.ground.seenFrom(this.camera);
+    if (this.groundOf !== this.body.positions) this.ground.setShape(this.groundOf = this.body.positions);
     this.renderer.info.reset();
     if (smooth) this.renderSmooth();
     else this.renderer.render(this.scene, this.camera);
