@@ -235,6 +235,15 @@ void Builder::place_nodes(BodyData& body) {
   for (Index& n : body.global_cells) n += body.first_node;
 }
 
+void Builder::move_nodes(BodyId id, std::span<const Vec3> by) {
+  BodyData& body = bodies_[static_cast<std::size_t>(id)];
+  for (std::size_t n = 0; n < by.size(); ++n) {
+    body.mesh.nodes[n] += by[n];
+    parts_.rest[at(body.first_node) + n] = body.mesh.nodes[n];
+  }
+  for (RegionData& region : body.regions) region.stencils = {};
+}
+
 Builder Builder::again() const {
   Builder next;
   next.slots_ = slots_;
@@ -469,6 +478,7 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
     const Index pool = add_stencils(std::make_shared<SolidPool>(body.name + "/" + region.name, data.value(),
                                                                 energy, static_cast<VolumeStrain>(strain)));
     if (wanted) region.volume_pool[strain] = pool;
+    if (energy && smoothed) region.guard_pool = pool;
     if (energy && !smoothed) region.elastic_pool = pool;
     energy = nullptr;  // once only
   }
