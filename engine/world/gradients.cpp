@@ -46,7 +46,9 @@ Result<void> World::Impl::Equilibrium::check_balance() {
   here = equations_at(present(), w.state, gauges);
   std::vector<double> magnitude(here.force.size());
   w.assembly().residual_magnitude(magnitude);
-  force_scale_ = std::max(largest(magnitude), 1e-300);
+  // Where nothing is strained, forces are rounding errors of a stiff body.
+  constexpr double nothing = 1e-9;
+  force_scale_ = std::max(largest(magnitude), nothing * largest(method.rest_stiffness()) * s.length());
   double force = 0, row = 0, position = 0;
   for (Index i = 0; i < s.nodes(); ++i) {
     Vec3 q = s.unknowns().to_free(i, here.force[at(i)]);
@@ -66,8 +68,6 @@ Result<void> World::Impl::Equilibrium::check_balance() {
     if (const Index b = s.basis_of()[at(i)]; b >= 0) gap[at(b)] = here.position[at(b)] - w.state.x[at(i)];
   }
   position = largest(way_of(gap)) / s.length();
-  // At rest nothing cancels, and nothing is out of balance.
-  if (largest(here.force) == 0) force = 0;
   if (force <= limit && row <= limit && position <= limit) return {};
   return Error{"gradients: the state is no equilibrium: forces are out of balance by " + number(force) +
                " of the largest, rows by " + number(row) + " of their measure, supports by " +

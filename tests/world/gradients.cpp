@@ -2,7 +2,7 @@
 // parameter moved, solves it to the last digits and takes differences.
 #include "isochor/gradients.h"
 
-#include <map>
+#include <set>
 
 #include "support/hollow_block.h"
 
@@ -165,6 +165,16 @@ TEST_CASE("every output by every parameter, with all elements and rows, is what 
   }
 }
 
+TEST_CASE("the list asks for every kind of output and of parameter", "[gradients]") {
+  const Block block = make_block({}, {});
+  std::set<Output::Kind> outputs;
+  std::set<Parameter::Kind> parameters{Parameter::Kind::cells};  // in a case of its own
+  for (const auto& [name, o] : all_outputs(block)) outputs.insert(o.kind);
+  for (const Asked& a : all_parameters(block)) parameters.insert(a.parameter.kind);
+  CHECK(outputs.size() == 1 + static_cast<std::size_t>(Output::Kind::energy));
+  CHECK(parameters.size() == 1 + static_cast<std::size_t>(Parameter::Kind::shape));
+}
+
 TEST_CASE("the same with rows of every space, and with a chamber of given volume", "[gradients]") {
   for (const auto space : {VolumeSpace::element, VolumeSpace::body, VolumeSpace::ring}) {
     CAPTURE(static_cast<int>(space));
@@ -313,4 +323,115 @@ TEST_CASE("what has no gradient is refused by name", "[gradients]") {
            1000);
   must_advance(moving, 0.01);
   CHECK_THAT(refusal(moving.gradients(query)), ContainsSubstring("inertia"));
+}
+
+namespace {
+
+struct Pressed {
+  World world;
+  BodyId body{};
+  EffectId top{};
+};
+
+// A block between a moved side and a floor.
+Pressed pressed(double gap, double down, double friction) {
+  Pressed p{make_world(tight_statics())};
+  p.body = add_body(p.world, block({0, 0, 0}, {1, 1, 1}, {2, 2, 2}), isochor::Element::tet4,
+                    neo_hookean(1e4, 0.4), 1000);
+  add_volume(p.world, p.body, VolumeSpace::element);
+  p.top = hold(p.world, p.body, {"z1"}, {}, {0, 0, -1}, isochor::Curve::constant(down));
+  isochor::ContactDef floor;
+  floor.name = "floor";
+  floor.body = p.body;
+  floor.surfaces = {"z0"};
+  floor.obstacle.shape = isochor::ObstacleShape::plane;
+  floor.obstacle.position = {0, 0, -gap};
+  floor.obstacle.axis = {0, 0, 1};
+  floor.friction = friction;
+  value(p.world.add(isochor::contact(floor)));
+  must_advance(p.world);
+  must_advance(p.world, 0.01);
+  return p;
+}
+
+GradientQuery about(const Pressed& p) {
+  GradientQuery query;
+  const Index corner = nearest_node(p.world.rest_positions(p.body), {1, 1, 0.5});
+  query.outputs = {Output::node(p.body, corner, {1, 0, 0}), Output::reaction(p.top, {0, 0, 1})};
+  query.parameters = {Parameter::amount_of(p.top), Parameter::stiffness(p.body)};
+  return query;
+}
+
+}  // namespace
+
+TEST_CASE("a floor without friction is part of the gradient, and touching says so", "[gradients]") {
+  Pressed firm = pressed(0.001, 0.05, 0);
+  const Gradients g = value(firm.world.gradients(about(firm)));
+  CHECK(g.regular);
+  CHECK(g.undecided.empty());
+  const double h = 1e-4;
+  std::vector<std::vector<double>> there;
+  for (const double by : {-h, h}) {
+    Pressed moved = pressed(0.001, 0.05 + by, 0);
+    there.push_back(value(moved.world.gradients(about(moved))).values);
+  }
+  for (std::size_t j = 0; j < 2; ++j) {
+    const double wanted = (there[1][j] - there[0][j]) / (2 * h);
+    CHECK_THAT(g.of(j, 0), WithinAbs(wanted, 1e-5 * std::abs(wanted)));
+  }
+  // Moved by given displacements alone: forces follow the stiffness, positions do not.
+  CHECK_THAT(g.of(0, 1), WithinAbs(0, 1e-10));
+  CHECK_THAT(g.of(1, 1), WithinAbs(g.values[1], 1e-8 * std::abs(g.values[1])));
+  Pressed touching = pressed(0.05 + 1e-8, 0.05, 0);
+  const Gradients one_sided = value(touching.world.gradients(about(touching)));
+  CHECK_FALSE(one_sided.regular);
+  CHECK(one_sided.undecided == std::vector<std::string>{"floor"});
+  CHECK_THAT(one_sided.note, ContainsSubstring("about to touch"));
+}
+
+TEST_CASE("with friction there are tangents alone, and what holds on is said", "[gradients]") {
+  Pressed rough = pressed(0.001, 0.05, 0.5);
+  GradientQuery query = about(rough);
+  const Gradients g = value(rough.world.gradients(query));
+  CHECK_FALSE(g.adjoint);
+  CHECK_FALSE(g.regular);
+  CHECK_THAT(g.note, ContainsSubstring("friction"));
+  query.mode = GradientQuery::Mode::adjoint;
+  CHECK_THAT(refusal(rough.world.gradients(query)), ContainsSubstring("unsymmetric"));
+}
+
+TEST_CASE("an equilibrium behind a limit point is refused unless it is meant", "[gradients]") {
+  isochor::WorldOptions options = tight_statics();
+  options.scheme = isochor::continuation();
+  options.gravity = {0, 0, -60};
+  options.gravity_curve = isochor::Curve::ramp(10, 10);
+  options.force_tolerance = 1e-11;
+  World arch = make_world(options);
+  Mesh mesh = block({0, 0, 0}, {1, 0.05, 0.03}, {24, 1, 2});
+  for (Vec3& X : mesh.nodes) X.z += 0.08 * std::sin(3.14159265358979 * X.x);
+  const BodyId body =
+      add_body(arch, std::move(mesh), isochor::Element::tet4_edge_smoothed, neo_hookean(1e6, 0.5), 1000);
+  add_volume(arch, body);
+  hold(arch, body, {"x0", "x1"});
+  GradientQuery query;
+  query.outputs = {Output::node(body, nearest_node(arch.rest_positions(body), {0.5, 0, 0.11}), {0, 0, 1})};
+  query.parameters = {Parameter::stiffness(body), Parameter::density(body)};
+  bool stable = false, unstable = false;
+  for (int k = 0; k < 60 && !unstable; ++k) {
+    const isochor::StepReport r = arch.follow(0.01);
+    REQUIRE(r.status == isochor::StepStatus::converged);
+    if (r.unstable_directions == 0) {
+      stable = true;
+      CHECK(arch.gradients(query).ok());
+      continue;
+    }
+    unstable = true;
+    CHECK_THAT(refusal(arch.gradients(query)), ContainsSubstring("unstable"));
+    query.unstable = true;
+    const Gradients g = value(arch.gradients(query));
+    // Heavier is as if it were softer.
+    CHECK_THAT(1000 * g.of(0, 1), WithinAbs(-g.of(0, 0), 1e-6 * std::abs(g.of(0, 0))));
+  }
+  CHECK(stable);
+  CHECK(unstable);
 }
