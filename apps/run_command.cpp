@@ -26,16 +26,6 @@ void on_signal(int) {
   if (g_signals.fetch_add(1) > 0) _exit(interrupted);
 }
 
-Result<SceneDef> find(const std::string& name, const Overrides& overrides) {
-  if (const LibraryScene* scene = find_scene(name)) return override_scene(scene->make({}), overrides);
-  const bool file = name.ends_with(".json") || name.find('/') != std::string::npos;
-  if (file) return read_scene_file(name, overrides);
-  std::string known;
-  for (const auto& s : scene_library()) known += (known.empty() ? "" : ", ") + std::string(s.name);
-  return Error{"there is no scene named \"" + name + "\"; the library has " + known +
-               "; a scene file ends in .json"};
-}
-
 class Progress {
  public:
   void header() const {
@@ -162,8 +152,18 @@ int exit_code(RunStatus status) {
 
 }  // namespace
 
+Result<SceneDef> find_scene_named(const std::string& name, const Overrides& overrides) {
+  if (const LibraryScene* scene = find_scene(name)) return override_scene(scene->make({}), overrides);
+  const bool file = name.ends_with(".json") || name.find('/') != std::string::npos;
+  if (file) return read_scene_file(name, overrides);
+  std::string known;
+  for (const auto& s : scene_library()) known += (known.empty() ? "" : ", ") + std::string(s.name);
+  return Error{"there is no scene named \"" + name + "\"; the library has " + known +
+               "; a scene file ends in .json"};
+}
+
 int run(const RunArguments& a) {
-  auto scene = find(a.scene, a.overrides);
+  auto scene = find_scene_named(a.scene, a.overrides);
   if (!scene) {
     std::fprintf(stderr, "isochor: %s\n", scene.error().c_str());
     return bad_input;
@@ -224,7 +224,7 @@ int run(const RunArguments& a) {
 }
 
 int show(const std::string& name, const std::vector<std::string>& overrides) {
-  auto scene = find(name, overrides);
+  auto scene = find_scene_named(name, overrides);
   if (!scene) {
     std::fprintf(stderr, "isochor: %s\n", scene.error().c_str());
     return bad_input;
