@@ -5,7 +5,7 @@
 //      among equals the one closest to the amounts of the target before: bounded least squares
 //   4. the step is tried anew with them, from the state of the target before; damped (Levenberg, Marquardt)
 //      until it comes closer
-//   5. from 2., until the target is reached or amounts change no more
+//   5. from 2., until the target is reached by amounts that change no more, or nothing comes closer
 // Every try begins at the same state, so that what remembers its past (friction, gas) sees one path alone.
 #include "studies/drive/drive.h"
 
@@ -58,6 +58,10 @@ constexpr int kMostHalvings = 8;
 // Of changes of amounts over their sizes, against what they do: how far a gradient holds. Far from a target
 // positions bend more than they follow.
 constexpr double kFirstDamping = 0.03;
+// Where a target is met, amounts that change less are looked for until they change by no more than this, for
+// so many gradients.
+constexpr double kStill = 1e-4;
+constexpr int kMostPolishing = 6;
 
 class Search {
  public:
@@ -99,6 +103,7 @@ class Search {
   // To a target; false: there is no way on.
   bool reach(std::size_t step);
   std::optional<Vector> start_at(std::size_t step, double h, const Vector& wanted);
+  bool polish(Vector& a, Vector& off, double h, const Vector& wanted, const Vector& next);
   bool approach(Vector& a, Vector& off, double h, const Vector& wanted, Reached& out);
 
   Drive& drive_;
@@ -112,6 +117,7 @@ class Search {
   Eigen::MatrixXd jacobian_;              // of positions by amounts; empty: not known yet
   std::string stuck_;
   double damping_ = 0;
+  int polished_ = 0;
   double weight_ = 0;  // its largest entry, by amounts over their sizes [m]
 };
 
@@ -216,6 +222,23 @@ std::optional<Eigen::VectorXd> Search::start_at(std::size_t step, double h, cons
   return std::nullopt;
 }
 
+// Towards amounts that change less; on the way a target may be missed by a little until the next gradient.
+bool Search::polish(Vector& a, Vector& off, double h, const Vector& wanted, const Vector& next) {
+  constexpr double astray = 100;  // times the tolerance
+  double part = 1;
+  for (int k = 0; k <= kMostHalvings; ++k, part *= 0.5) {
+    const Vector trial = a + part * (next - a);
+    if (!attempt(trial, h)) continue;
+    const Vector there = positions() - wanted;
+    if (there.norm() > astray * options_.tolerance) continue;
+    a = trial;
+    off = there;
+    return true;
+  }
+  if (!attempt(a, h)) stuck_ = "a step that was found is not found again";
+  return false;
+}
+
 // One gradient and the step that it asks for. False: there is no closer, or the search has to end.
 bool Search::approach(Vector& a, Vector& off, double h, const Vector& wanted, Reached& out) {
   if (auto r = differentiate(); !r) {
@@ -224,6 +247,7 @@ bool Search::approach(Vector& a, Vector& off, double h, const Vector& wanted, Re
   }
   ++out.iterations;
   const double here = merit(a, off);
+  const bool met = off.norm() <= options_.tolerance;
   for (int k = 0; k <= kMostHalvings; ++k) {
     const auto next = proposal(a, off, k == 0 ? 0 : damping_);
     if (!next) {
@@ -231,10 +255,14 @@ bool Search::approach(Vector& a, Vector& off, double h, const Vector& wanted, Re
       return false;
     }
     const Vector ahead = off + jacobian_ * (*next - a);
-    // Far from a target the distance itself is known to no better than equilibria are.
     if (k == 0) {
-      out.nearest = off.norm() - ahead.norm() <= 1e-2 * options_.tolerance;
-      if (out.nearest) return false;
+      const double gain = off.norm() - ahead.norm(), small = 1e-2 * options_.tolerance;
+      const double change = (*next - a).cwiseQuotient(scale_).cwiseAbs().maxCoeff();
+      // Far from a target the distance itself is known to no better than equilibria are.
+      out.nearest = !met && gain <= small;
+      if (out.nearest || (met && gain <= small && (change <= kStill || ++polished_ > kMostPolishing)))
+        return false;
+      if (met) return polish(a, off, h, wanted, *next);
       if (damping_ > 0) continue;
     }
     const bool found = attempt(*next, h);
@@ -263,9 +291,8 @@ bool Search::reach(std::size_t step) {
   out.time = targets.time[step];
   stuck_.clear();
   damping_ = 0;
-  // Much closer than asked for costs an iteration more, and the next target starts better.
-  while (out.iterations < options_.max_iterations &&
-         (out.iterations == 0 || off.norm() > 1e-3 * options_.tolerance)) {
+  polished_ = 0;
+  while (out.iterations < options_.max_iterations) {
     drive_.interrupted = options_.stop && options_.stop();
     if (drive_.interrupted) return false;
     if (!approach(a, off, h, wanted, out)) break;
