@@ -31,6 +31,7 @@ struct Kind {
   isochor::Element element = isochor::Element::tet4;
   isochor::VolumeSpace space = isochor::VolumeSpace::node;
   isochor::CavityControl control = isochor::CavityControl::pressure;
+  double guard = 0;  // stiffness of an element guard that acts everywhere; 0: as it is by default
 };
 
 struct Block {
@@ -132,8 +133,15 @@ inline Block make_block(const Knobs& knobs, const Kind& kind) {
   if (kind.element == isochor::Element::tet10) mesh = isochor::to_tet10(mesh);
   const std::vector<Vec3> motion = shape_motion(mesh);
   for (std::size_t n = 0; n < motion.size(); ++n) mesh.nodes[n] += knobs.shape * motion[n];
-  b.body = add_body(b.world, std::move(mesh), kind.element,
-                    value(material_of(knobs.young, knobs.poisson, knobs)), knobs.density);
+  isochor::BodyDef def;
+  def.mesh = std::move(mesh);
+  def.element = kind.element;
+  def.materials = {{"", value(material_of(knobs.young, knobs.poisson, knobs)), knobs.density}};
+  if (kind.guard > 0) {
+    def.guard_stiffness = kind.guard;
+    def.guard_threshold = 1.5;
+  }
+  b.body = value(b.world.add_body(std::move(def)));
   add_volume(b.world, b.body, kind.space);
   b.clamp = hold(b.world, b.body, {"x0"}, {}, {0, 0.02, 0.01}, isochor::Curve::constant(knobs.clamp));
   isochor::CavityDef cavity;

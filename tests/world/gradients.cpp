@@ -192,7 +192,9 @@ TEST_CASE("stiffnesses of cells are what differences of fields say, and add up t
       CAPTURE(name_of(element), static_cast<int>(space));
       Knobs knobs;
       knobs.poisson = 0.45;
-      const Kind kind{element, space, isochor::CavityControl::pressure};
+      // Of edge-smoothed tets, with the guard at work.
+      const double guard = element == isochor::Element::tet4_edge_smoothed ? 0.05 : 0;
+      const Kind kind{element, space, isochor::CavityControl::pressure, guard};
       const auto cells = static_cast<std::size_t>(make_block(knobs, kind).world.mesh({}).cell_count());
       for (std::size_t c = 0; c < cells; ++c)
         knobs.field.push_back(1 + 0.3 * std::sin(static_cast<double>(c)));
