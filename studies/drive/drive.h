@@ -20,7 +20,7 @@ struct Actuator {
 Result<Actuator> parse_actuator(const std::string& text);
 
 struct DriveOptions {
-  double tolerance = 1e-6;  // a target counts as reached within this distance [m]
+  double tolerance = 1e-6;   // a target counts as reached within this distance [m]
   int max_iterations = 100;  // of each target
   int threads = 0;
   std::function<bool()> stop;  // asked at every iteration
