@@ -153,8 +153,25 @@ Result<void> World::Impl::Equilibrium::check_body(BodyId body, const char* who) 
   return Error{std::string("gradients: ") + who + ": " + builder.no_body(body)};
 }
 
-CellTerms World::Impl::Equilibrium::cell_terms(BodyId body) const {
-  return {w.said.builder.body(body), w.system(), w.assembly(), *w.parallel, w.state.x, w.state.lambda};
+Result<CellTerms> World::Impl::Equilibrium::cell_terms(BodyId body) const {
+  // Energies of bodies beside those that are known here would be left out.
+  const auto& owner = w.said.builder.owners().stencil_pool;
+  const auto known = [&](Index pool) {
+    for (const BodyData& b : w.said.builder.bodies()) {
+      for (const RegionData& r : b.regions) {
+        if (r.elastic_pool == pool || r.guard_pool == pool) return true;
+      }
+    }
+    return false;
+  };
+  for (std::size_t p = 0; p < owner.size(); ++p) {
+    const StencilPool& pool = *w.system().parts().stencil_pools[p];
+    if (owner[p] >= 0 || !pool.has_energy() || known(static_cast<Index>(p))) continue;
+    return Error{"gradients: how the energy of \"" + std::string(pool.name()) +
+                 "\" goes with the stiffness of cells is not known; take constants of the material"};
+  }
+  return CellTerms{
+      w.said.builder.body(body), w.system(), w.assembly(), *w.parallel, w.state.x, w.state.lambda};
 }
 
 Result<Equations> World::Impl::Equilibrium::change_by(const Parameter& p) {
@@ -246,15 +263,16 @@ Result<Equations> World::Impl::Equilibrium::change_by_stiffness(const Parameter&
     for (const Index c : body.regions[r].cells) rate[at(c)] = 1;
   }
   Equations change(w.system(), gauges.size());
-  const CellTerms terms = cell_terms(p.body);
-  auto done = terms.each_force([&](const CellTerms::Stencil& stencil) {
+  const auto terms = cell_terms(p.body);
+  if (!terms) return Error{terms.error()};
+  auto done = terms.value().each_force([&](const CellTerms::Stencil& stencil) {
     const double factor = stencil.share * rate[at(stencil.cell)];
     change.energy += factor * stencil.energy;
     for (std::size_t a = 0; a < stencil.nodes.size(); ++a)
       change.force[at(stencil.nodes[a])] += factor * stencil.forces[a];
   });
   if (!done) return Error{done.error()};
-  terms.each_row([&](Index cell, Index row, double value) {
+  terms.value().each_row([&](Index cell, Index row, double value) {
     change.theta[at(row)] += rate[at(cell)] * value;
     change.energy -= 0.5 * rate[at(cell)] * value * w.state.lambda[at(row)];
   });
@@ -400,15 +418,16 @@ Result<std::vector<double>> World::Impl::Equilibrium::by_cells(const OutputSeed&
                                                                BodyId body) {
   if (auto r = check_body(body, "cell_stiffness"); !r) return Error{r.error()};
   std::vector<double> out(at(w.said.builder.body(body).mesh.cell_count()), 0);
-  const CellTerms terms = cell_terms(body);
-  auto done = terms.each_force([&](const CellTerms::Stencil& stencil) {
+  const auto terms = cell_terms(body);
+  if (!terms) return Error{terms.error()};
+  auto done = terms.value().each_force([&](const CellTerms::Stencil& stencil) {
     double sum = seed.energy ? stencil.energy : 0;
     for (std::size_t a = 0; a < stencil.nodes.size(); ++a)
       sum -= dot(adjoint.force[at(stencil.nodes[a])], stencil.forces[a]);
     out[at(stencil.cell)] += stencil.share * sum;
   });
   if (!done) return Error{done.error()};
-  terms.each_row([&](Index cell, Index row, double value) {
+  terms.value().each_row([&](Index cell, Index row, double value) {
     const double held = seed.energy ? 0.5 * w.state.lambda[at(row)] : 0;
     out[at(cell)] -= (adjoint.row[at(row)] + held) * value;
   });

@@ -71,7 +71,7 @@ struct World::Impl::Equilibrium {
   Result<Equations> change_by_density(const Parameter& parameter);
   Result<Equations> change_beside(const Parameter& parameter);
   Result<Description> beside(const Parameter& parameter, double at_value, bool& refused_by_law);
-  CellTerms cell_terms(BodyId body) const;
+  Result<CellTerms> cell_terms(BodyId body) const;
 
   double force_scale_ = 1;
 };

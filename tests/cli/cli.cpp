@@ -213,7 +213,7 @@ TEST_CASE("drive finds amounts, and says which targets are out of reach") {
   CHECK(free.out.find("2 of 2 targets reached") != std::string::npos);
   for (const char* file : {"drive.csv", "drive.json", "summary.json", "steps.csv"})
     CHECK(fs::exists(shell.folder() / "out" / file));
-  const Outcome bounded = shell.run(drive + " --amount pull=0:0.6");
+  const Outcome bounded = shell.run(drive + " --amount pull=0:0.4");
   CHECK(bounded.code == 3);
   CHECK(bounded.out.find("nearest") != std::string::npos);
   CHECK(shell.run(drive + " --amount wind").code == 2);
