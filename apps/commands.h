@@ -24,6 +24,9 @@ enum Exit : int {
   interrupted = 130,  // as shells report SIGINT
 };
 
+// A scene of the library by its name, or a scene file.
+Result<SceneDef> find_scene_named(const std::string& name, const std::vector<std::string>& overrides);
+
 struct RunArguments {
   std::string scene = "finger";
   std::vector<std::string> overrides;
@@ -81,8 +84,6 @@ struct LiveArguments {
   bool dynamic = false, readonly = false, paused = false, record = false, quiet_browser = false;
 };
 
-// A scene of the library by its name, or the one of a file.
-Result<SceneDef> find_or_read(const std::string& name, const std::vector<std::string>& overrides);
 // False where no browser could be started.
 bool open_in_browser(const std::string& address);
 
@@ -91,6 +92,15 @@ int live(const LiveArguments& arguments);
 int view(const ViewArguments& arguments);
 int study(const StudyArguments& arguments);
 int fit_laws(const FitArguments& arguments);
+
+struct DriveArguments {
+  std::string scene, targets, folder;           // folder empty: out/drive/NAME
+  std::vector<std::string> amounts, overrides;  // amounts: NAME=LEAST:MOST:RATE
+  double tolerance = 1e-6;                      // [m]
+  int threads = 0;
+  bool json = false, quiet = false;
+};
+int drive_scene(const DriveArguments& arguments);
 // The study of random scenes; `stop` is asked now and then.
 int chaos(const StudyArguments& arguments, const std::function<bool()>& stop);
 int show(const std::string& scene, const std::vector<std::string>& overrides);

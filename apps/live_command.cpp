@@ -66,7 +66,7 @@ void greet(const LiveArguments& a, const live::Server& server, const SceneDef& s
 }  // namespace
 
 int live(const LiveArguments& a) {
-  auto scene = find_or_read(a.scene, a.overrides);
+  auto scene = find_scene_named(a.scene, a.overrides);
   if (!scene) return refuse(bad_input, scene.error());
   live::ServerOptions server_options{a.host, a.port, live_page()};
   if (server_options.page.empty())

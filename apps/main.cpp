@@ -92,6 +92,37 @@ void add_fit(CLI::App& top, app::FitArguments& a) {
   c->add_flag("--quiet", a.quiet, "Print errors only");
 }
 
+void add_drive(CLI::App& top, app::DriveArguments& a) {
+  CLI::App* c = top.add_subcommand("drive", "Find amounts that bring probes of a scene to targets");
+  c->add_option("scene", a.scene, "Name of a scene (see `isochor list`) or a file that ends in .json")
+      ->required();
+  c->add_option("--targets", a.targets, "CSV file: time, and components of probes such as tip.x [m]")
+      ->required()
+      ->type_name("FILE");
+  c->add_option("--amount", a.amounts,
+                "An effect whose amount is chosen, with bounds and rate; may be given again")
+      ->required()
+      ->type_name("NAME=LEAST:MOST:RATE")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  c->add_option("--set", a.overrides, "Change a value of the scene: path=value")
+      ->type_name("PATH=VALUE")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  c->add_option("--tolerance", a.tolerance, "Distance within which a target is reached; default 1e-6")
+      ->type_name("METERS")
+      ->check(CLI::PositiveNumber);
+  c->add_option("--out", a.folder, "Folder of the outputs; default out/drive/NAME")->type_name("DIR");
+  c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
+  c->add_flag("--json", a.json, "Print drive.json");
+  c->add_flag("--quiet", a.quiet, "Print errors only");
+  c->footer(
+      "Exit codes: 0 all targets are reached, 3 some are not (drive.csv says which and how far), 2 bad "
+      "input.");
+}
+
 void add_view(CLI::App& top, app::ViewArguments& a) {
   CLI::App* c = top.add_subcommand("view", "Open the results page of a folder; make it where it is missing");
   c->add_option("folder", a.folder, "What `isochor run` or `isochor study` wrote: out/finger")->required();
@@ -141,6 +172,7 @@ int dispatch(int argc, char** argv) {
   app::ViewArguments view;
   app::FitArguments fit;
   app::LiveArguments live;
+  app::DriveArguments drive;
   bool json = false;
   double scale = 1;
   std::vector<std::string> meshes, overrides;
@@ -152,6 +184,7 @@ int dispatch(int argc, char** argv) {
   add_view(top, view);
   add_live(top, live);
   add_fit(top, fit);
+  add_drive(top, drive);
   CLI::App* check =
       top.add_subcommand("check", "Check mesh files: counts and findings; exit 2 if one is not usable");
   check->add_option("mesh", meshes, "Mesh files (.msh, .vtk, .vtu, .node/.ele, .mesh)")->required();
@@ -185,6 +218,7 @@ int dispatch(int argc, char** argv) {
   }
   if (version->parsed()) return app::version(json);
   if (top.got_subcommand("fit")) return app::fit_laws(fit);
+  if (top.got_subcommand("drive")) return app::drive_scene(drive);
   if (top.got_subcommand("study")) return app::study(study);
   if (top.got_subcommand("view")) return app::view(view);
   if (top.got_subcommand("live")) return app::live(live);

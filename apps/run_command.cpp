@@ -152,7 +152,7 @@ int exit_code(RunStatus status) {
 
 }  // namespace
 
-Result<SceneDef> find_or_read(const std::string& name, const std::vector<std::string>& overrides) {
+Result<SceneDef> find_scene_named(const std::string& name, const Overrides& overrides) {
   if (const LibraryScene* scene = find_scene(name)) return override_scene(scene->make({}), overrides);
   const bool file = name.ends_with(".json") || name.find('/') != std::string::npos;
   if (file) return read_scene_file(name, overrides);
@@ -163,7 +163,7 @@ Result<SceneDef> find_or_read(const std::string& name, const std::vector<std::st
 }
 
 int run(const RunArguments& a) {
-  auto scene = find_or_read(a.scene, a.overrides);
+  auto scene = find_scene_named(a.scene, a.overrides);
   if (!scene) {
     std::fprintf(stderr, "isochor: %s\n", scene.error().c_str());
     return bad_input;
@@ -224,7 +224,7 @@ int run(const RunArguments& a) {
 }
 
 int show(const std::string& name, const std::vector<std::string>& overrides) {
-  auto scene = find_or_read(name, overrides);
+  auto scene = find_scene_named(name, overrides);
   if (!scene) {
     std::fprintf(stderr, "isochor: %s\n", scene.error().c_str());
     return bad_input;

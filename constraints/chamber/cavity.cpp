@@ -359,6 +359,9 @@ class CavityInstance final : public EffectInstance {
     const auto memory = c.system.row_memory(row_pool_, std::span<const double>(c.state.extra));
     out.push_back({name_, "cavity", "content", "m^3", ChamberNetwork::held(memory, chamber)});
   }
+  std::vector<GaugeSource> gauge_sources() const override {
+    return {{"pressure", row_pool_, chamber, true, -1}, {"volume", row_pool_, chamber, false, 1}};
+  }
 
  private:
   std::string name_;

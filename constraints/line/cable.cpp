@@ -46,6 +46,9 @@ class CableInstance final : public EffectInstance {
     out.push_back({name, "cable", "tension", "N", tension});
     out.push_back({name, "cable", "length", "m", pool_->length(c.state.x)});
   }
+  std::vector<GaugeSource> gauge_sources() const override {
+    return {{"tension", row_pool_, 0, true, 1}, {"length", row_pool_, 0, false, 1}};
+  }
 
  private:
   std::shared_ptr<const SegmentPool> pool_;

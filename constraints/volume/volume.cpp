@@ -159,7 +159,7 @@ class VolumeEffect final : public EffectSource {
       case VolumeSpace::node: {
         std::vector<Index> nodes;
         const auto rows = nodal_volume_rows(region, equal_order ? def_.stabilization : 0, &nodes);
-        if (def_.lumped_compliance) lump(*rows);
+        if (def_.lumped_compliance) rows->lump();
         const Index pool = add(builder, rows);
         if (region.strain == VolumeStrain::linear && def_.carries_bulk) {
           instance.nodal.push_back({pool, std::move(nodes)});
@@ -183,17 +183,6 @@ class VolumeEffect final : public EffectSource {
   Index add(Builder& builder, const std::shared_ptr<RowPool>& rows) const {
     rows->treatment = def_.treatment;
     return builder.add_rows(rows);
-  }
-
-  // Row sums on the diagonal. Those of the stabilization are zero.
-  static void lump(RowPool& rows) {
-    std::vector<double> sum(at(rows.rows()), 0);
-    for (const ComplianceEntry& e : rows.compliance) {
-      sum[at(e.row)] += e.value;
-      if (e.row != e.col) sum[at(e.col)] += e.value;
-    }
-    rows.compliance.clear();
-    for (Index r = 0; r < rows.rows(); ++r) rows.compliance.push_back({r, r, sum[at(r)]});
   }
 
   VolumeDef def_;

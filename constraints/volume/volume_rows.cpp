@@ -38,7 +38,7 @@ void finish_row(RowPool& rows, double volume, double metric) {
 }  // namespace
 
 std::shared_ptr<RowPool> element_volume_rows(const VolumeRegion& region) {
-  auto rows = std::make_shared<VolumeRowPool>(region.name);
+  auto rows = std::make_shared<VolumeRowPool>(region);
   rows->stencil_pool = region.stencil_pool;
   for (Index s = 0; s < region.pool->stencils(); ++s) {
     const double volume = region.pool->volume(s);
@@ -50,7 +50,7 @@ std::shared_ptr<RowPool> element_volume_rows(const VolumeRegion& region) {
 }
 
 std::shared_ptr<RowPool> total_volume_row(const VolumeRegion& region) {
-  auto rows = std::make_shared<VolumeRowPool>(region.name);
+  auto rows = std::make_shared<VolumeRowPool>(region);
   rows->stencil_pool = region.stencil_pool;
   double volume = 0, metric = 0, compliance = 0;
   for (Index s = 0; s < region.pool->stencils(); ++s) {
@@ -71,7 +71,7 @@ bool is_hard_zone(const VolumeRegion& region, const VolumeZones& zones, std::siz
 }
 
 std::shared_ptr<RowPool> zone_volume_rows(const VolumeRegion& region, const VolumeZones& zones) {
-  auto rows = std::make_shared<VolumeRowPool>(region.name);
+  auto rows = std::make_shared<VolumeRowPool>(region);
   rows->stencil_pool = region.stencil_pool;
   const SolidPool& pool = *region.pool;
   const auto weight_of = [&](std::size_t z, std::size_t i) {
@@ -137,6 +137,102 @@ VolumeZones ring_zones(const VolumeRegion& region, int rings) {
   return out;
 }
 
+namespace {
+
+// Corner nodes: rows are in ascending order of them, whatever the order of the cells.
+std::vector<Index> nodes_with_rows(const VolumeRegion& region) {
+  std::vector<Index> nodes;
+  for (Index s = 0; s < region.pool->stencils(); ++s) {
+    const auto corners = region.pool->nodes()[s].first(at(region.corners));
+    nodes.insert(nodes.end(), corners.begin(), corners.end());
+  }
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+// What a cell has to do with the rows of its corners.
+struct NodalCell {
+  Index row[8];
+  double mass[8][8];  // integrals of N_k N_l
+  double share[8];    // of N_k
+};
+
+NodalCell nodal_cell(const VolumeRegion& region, const std::vector<Index>& nodes, Index s) {
+  const SolidPool& pool = *region.pool;
+  const double V = pool.volume(s);
+  NodalCell cell = {};
+  for (int k = 0; k < region.corners; ++k) {
+    const Index node = pool.nodes()[s][at(k)];
+    cell.row[k] = static_cast<Index>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
+    for (int l = 0; l < region.corners; ++l) {
+      cell.mass[k][l] = pressure_mass(pool.data(), s, V, k, l);
+      cell.share[k] += cell.mass[k][l];
+    }
+  }
+  return cell;
+}
+
+// What a cell adds to the compliance of nodal rows: (row, col, value).
+template <class Add>
+void each_share(const VolumeRegion& region, const NodalCell& cell, Index s, double tau, Add&& add) {
+  const double V = region.pool->volume(s), mu = region.shear_modulus_of(s), bulk = region.inverse_bulk_of(s);
+  for (int k = 0; k < region.corners; ++k) {
+    for (int l = 0; l < region.corners; ++l) {
+      if (cell.row[k] < cell.row[l]) continue;
+      double c = cell.mass[k][l] * bulk;
+      if (tau > 0) c += tau / mu * (cell.mass[k][l] - cell.share[k] * cell.share[l] / V);
+      if (c != 0) add(cell.row[k], cell.row[l], c);
+    }
+  }
+}
+
+// Of rows over whole stencils: of their own compliance, in proportion to volume and 1/kappa.
+void add_own_shares(const VolumeRegion& region, const RowSet& rows, std::vector<ComplianceShare>& out) {
+  const Index functions = region.pool->functions();
+  for (const ComplianceEntry& e : rows.compliance) {
+    const auto first = out.size();
+    double sum = 0;
+    for (Index i = rows.map.offset[at(e.row)]; i < rows.map.offset[at(e.row) + 1]; ++i) {
+      if (rows.map.item[at(i)] % functions != 0) continue;
+      const Index s = rows.map.item[at(i)] / functions;
+      const double c = rows.weight[at(i)] * region.pool->volume(s) * region.inverse_bulk_of(s);
+      out.push_back({e.row, e.row, s, c});
+      sum += c;
+    }
+    for (std::size_t i = first; i < out.size(); ++i) out[i].value *= sum > 0 ? e.value / sum : 0;
+  }
+}
+
+}  // namespace
+
+std::vector<ComplianceShare> VolumeRowPool::compliance_shares() const {
+  std::vector<ComplianceShare> out;
+  if (!nodal_) {
+    add_own_shares(region_, *this, out);
+    return out;
+  }
+  const std::vector<Index> nodes = nodes_with_rows(region_);
+  for (Index s = 0; s < region_.pool->stencils(); ++s) {
+    each_share(region_, nodal_cell(region_, nodes, s), s, *nodal_, [&](Index row, Index col, double c) {
+      out.push_back({row, lumped_ ? row : col, s, c});
+      if (lumped_ && row != col) out.push_back({col, col, s, c});
+    });
+  }
+  return out;
+}
+
+void VolumeRowPool::lump() {
+  lumped_ = true;
+  std::vector<double> sum(at(rows()), 0);
+  for (const ComplianceEntry& e : compliance) {
+    sum[at(e.row)] += e.value;
+    if (e.row != e.col) sum[at(e.col)] += e.value;
+  }
+  compliance.clear();
+  for (Index r = 0; r < rows(); ++r) compliance.push_back({r, r, sum[at(r)]});
+}
+
 // One entry a pair of rows, ascending; what adds up to one comes in the order in which it was found.
 static std::vector<ComplianceEntry> summed(std::vector<ComplianceEntry> entries) {
   const auto same = [](const ComplianceEntry& a, const ComplianceEntry& b) {
@@ -156,50 +252,33 @@ static std::vector<ComplianceEntry> summed(std::vector<ComplianceEntry> entries)
   return entries;
 }
 
-std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double tau,
-                                           std::vector<Index>* corner_nodes) {
-  auto rows = std::make_shared<VolumeRowPool>(region.name);
+std::shared_ptr<VolumeRowPool> nodal_volume_rows(const VolumeRegion& region, double tau,
+                                                 std::vector<Index>* corner_nodes) {
+  auto rows = std::make_shared<VolumeRowPool>(region);
   rows->stencil_pool = region.stencil_pool;
   const SolidPool& pool = *region.pool;
   const SolidData& data = pool.data();
   const std::size_t corners = static_cast<std::size_t>(region.corners);
-  // Rows in ascending order of their nodes, whatever the order of the cells.
-  std::vector<Index> nodes;
-  for (Index s = 0; s < pool.stencils(); ++s) {
-    for (std::size_t k = 0; k < corners; ++k) nodes.push_back(pool.nodes()[s][k]);
-  }
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  const auto row_of = [&](Index node) {
-    return static_cast<Index>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin());
-  };
+  const std::vector<Index> nodes = nodes_with_rows(region);
   std::vector<std::vector<std::pair<Index, double>>> terms(nodes.size());
   std::vector<double> volume(nodes.size(), 0), metric(nodes.size(), 0);
   std::vector<ComplianceEntry> compliance;
   const bool per_corner = data.functions == region.corners;
   for (Index s = 0; s < pool.stencils(); ++s) {
-    const double V = pool.volume(s), mu = region.shear_modulus_of(s), bulk = region.inverse_bulk_of(s);
-    Index row[8];
-    double share[8] = {};  // integral of N_k
-    for (std::size_t k = 0; k < corners; ++k) {
-      row[k] = row_of(pool.nodes()[s][k]);
-      for (std::size_t l = 0; l < corners; ++l)
-        share[k] += pressure_mass(data, s, V, static_cast<int>(k), static_cast<int>(l));
-    }
+    const NodalCell cell = nodal_cell(region, nodes, s);
+    const double mu = region.shear_modulus_of(s);
     for (std::size_t k = 0; k < corners; ++k) {
       const int kk = static_cast<int>(k);
-      terms[at(row[k])].push_back(per_corner ? std::pair(s * data.functions + kk, 1.0)
-                                             : std::pair(s, 1.0 / static_cast<double>(corners)));
+      terms[at(cell.row[k])].push_back(per_corner ? std::pair(s * data.functions + kk, 1.0)
+                                                  : std::pair(s, 1.0 / static_cast<double>(corners)));
       for (std::size_t l = 0; l < corners; ++l) {
-        const double mass = pressure_mass(data, s, V, kk, static_cast<int>(l));
-        volume[at(row[k])] += mass;
-        metric[at(row[k])] += mass / mu;
-        if (row[k] < row[l]) continue;
-        double c = mass * bulk;
-        if (tau > 0) c += tau / mu * (mass - share[k] * share[l] / V);
-        if (c != 0) compliance.push_back({row[k], row[l], c});
+        volume[at(cell.row[k])] += cell.mass[k][l];
+        metric[at(cell.row[k])] += cell.mass[k][l] / mu;
       }
     }
+    each_share(region, cell, s, tau, [&](Index row, Index col, double c) {
+      compliance.push_back({row, col, c});
+    });
   }
   for (std::size_t r = 0; r < nodes.size(); ++r) {
     for (const auto& [function, weight] : terms[r]) {
@@ -209,6 +288,7 @@ std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double ta
     finish_row(*rows, volume[r], metric[r]);
   }
   rows->compliance = summed(std::move(compliance));
+  rows->set_nodal(tau);
   if (corner_nodes) *corner_nodes = nodes;
   return rows;
 }

@@ -2,6 +2,8 @@
 // multipliers.
 #pragma once
 
+#include <optional>
+
 #include "engine/elements/material_model.h"
 #include "engine/elements/solid_pool.h"
 
@@ -32,13 +34,22 @@ struct VolumeRegion {
 };
 
 // Base of the family: targets are zero, the volume at rest.
-class VolumeRowPool : public RowPool {
+class VolumeRowPool final : public RowPool, public SharedCompliance {
  public:
-  explicit VolumeRowPool(std::string name) : name_(std::move(name)) {}
-  std::string_view name() const override { return name_; }
+  explicit VolumeRowPool(VolumeRegion region) : region_(std::move(region)) {}
+  std::string_view name() const override { return region_.name; }
+  RowFacets facets() const override { return {.shared = this}; }
+  std::vector<ComplianceShare> compliance_shares() const override;
 
- protected:
-  std::string name_;
+  // Rows at nodes: with the stabilization that they have.
+  void set_nodal(double tau) { nodal_ = tau; }
+  // Row sums on the diagonal. Those of the stabilization are zero.
+  void lump();
+
+ private:
+  VolumeRegion region_;
+  std::optional<double> nodal_;
+  bool lumped_ = false;
 };
 
 // One row an element: phi_e = integral of Phi over the element, C = V/kappa.
@@ -49,8 +60,8 @@ std::shared_ptr<RowPool> element_volume_rows(const VolumeRegion& region);
 // stabilization (tau/mu) (M_e - m m^T/V), m_k the integral of N_k (V/4 on a tet), of Dohrmann & Bochev 2004
 // when tau > 0; its rows sum to zero, so the total volume is not affected. `corner_nodes` returns the global
 // nodes the rows stand for.
-std::shared_ptr<RowPool> nodal_volume_rows(const VolumeRegion& region, double tau,
-                                           std::vector<Index>* corner_nodes = nullptr);
+std::shared_ptr<VolumeRowPool> nodal_volume_rows(const VolumeRegion& region, double tau,
+                                                 std::vector<Index>* corner_nodes = nullptr);
 
 // One row over all stencils of the region: phi = volume integral of Phi, C = V/kappa.
 std::shared_ptr<RowPool> total_volume_row(const VolumeRegion& region);

@@ -236,6 +236,15 @@ void Builder::place_nodes(BodyData& body) {
   for (Index& n : body.global_cells) n += body.first_node;
 }
 
+void Builder::move_nodes(BodyId id, std::span<const Vec3> by) {
+  BodyData& body = bodies_[static_cast<std::size_t>(id)];
+  for (std::size_t n = 0; n < by.size(); ++n) {
+    body.mesh.nodes[n] += by[n];
+    parts_.rest[at(body.first_node) + n] = body.mesh.nodes[n];
+  }
+  for (RegionData& region : body.regions) region.stencils = {};
+}
+
 Builder Builder::again() const {
   Builder next;
   next.slots_ = slots_;
@@ -488,6 +497,7 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
       region.elastic_pool = pool;
       add_memory(body, region, data.value());
     }
+    if (energy && smoothed) region.guard_pool = pool;
     energy = nullptr;  // once only
   }
   return {};

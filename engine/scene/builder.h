@@ -83,6 +83,15 @@ struct PressingPoint {
   double force = 0, area = 0;
 };
 
+// What a gauge reads of the equations: the multiplier of a row, or its function, times a factor. What it has
+// beside does not depend on positions or multipliers.
+struct GaugeSource {
+  std::string_view quantity;
+  Index row_pool = -1, row = 0;
+  bool multiplier = false;
+  double factor = 1;
+};
+
 // The live part of an effect: what a host can set and read.
 class EffectInstance {
  public:
@@ -93,6 +102,8 @@ class EffectInstance {
     (void)context;
     (void)out;
   }
+  // Of gauges that follow one row each.
+  virtual std::vector<GaugeSource> gauge_sources() const { return {}; }
   // Force and moment about the origin by which it holds bodies with rows of its own; what prescribes
   // coordinates has residuals for that.
   virtual std::array<Vec3, 2> reaction(const GaugeContext& context) const {
@@ -155,6 +166,7 @@ struct RegionData {
   std::shared_ptr<const Material> energy;  // of elastic_pool
   Index elastic_pool = -1;
   std::vector<Index> memory_pools;  // on the stencils of elastic_pool
+  Index guard_pool = -1;                                              // of edge-smoothed bodies
   std::array<Index, kVolumeStrains> volume_pool{-1, -1, -1, -1, -1};  // by VolumeStrain
   std::array<bool, kVolumeStrains> volume_wanted{};
   bool has_volume_pool(Index pool) const {
@@ -223,6 +235,8 @@ class ISOCHOR_API Builder {
   // The regions that a definition is for; empty: all. The error names those that there are.
   Result<void> set_material(BodyId id, const std::string& region, const MaterialPtr& material);
   Result<void> set_density(BodyId id, const std::string& region, double density);
+  // Of a builder that has built nothing: moves the rest positions of a body, one vector a node.
+  void move_nodes(BodyId id, std::span<const Vec3> by);
 
   const Slots& body_slots() const { return slots_; }
   // Places of bodies; those that are free hold none (BodyData::present()).

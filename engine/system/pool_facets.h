@@ -169,11 +169,29 @@ class TurningRows {
   ~TurningRows() = default;
 };
 
+// What one stencil adds to an entry of the compliance.
+struct ComplianceShare {
+  Index row = 0, col = 0;  // row >= col, both inside the pool
+  Index stencil = 0;       // of the pool that the rows are over
+  double value = 0;
+};
+
+// Rows whose compliance is a sum over stencils: asked where it matters how it changes with one of them.
+class SharedCompliance {
+ public:
+  // They add up to RowSet::compliance.
+  virtual std::vector<ComplianceShare> compliance_shares() const = 0;
+
+ protected:
+  ~SharedCompliance() = default;
+};
+
 struct RowFacets {
   const LawRows* law = nullptr;
   const RememberingRows* remembering = nullptr;
   const ImpactRows* impact = nullptr;
   const TurningRows* turning = nullptr;
+  const SharedCompliance* shared = nullptr;
 };
 
 }  // namespace isochor

@@ -148,33 +148,43 @@ struct World::Impl::Derivatives {
     if (largest > 0) return small * w.system().length() / largest;
     return rate > 0 ? small * std::max(multiplier, rate) / rate : 1;
   }
-
-  // What makes the derivative one-sided.
-  std::string irregular() {
-    constexpr double close = 1e-6;
-    const std::vector<double> theta = w.row_residuals();
-    std::vector<double> phi(theta.size());
-    w.assembly().row_values(phi);
-    Index undecided = 0;
-    for (std::size_t r = 0; w.system().has_bounds() && r < phi.size(); ++r) {
-      const double d = w.system().row_metric()[r], l = w.state.lambda[r];
-      const double lower = w.system().row_lower()[r], upper = w.system().row_upper()[r];
-      if (!std::isfinite(lower) && !std::isfinite(upper)) continue;
-      const double gap = (phi[r] - w.data->target()[r]) / w.system().row_measure()[r];
-      const double pull =
-          std::min(std::abs(l - lower), std::abs(l - upper)) * d / w.system().row_measure()[r];
-      if (std::abs(gap) < close && pull < close) ++undecided;
-    }
-    if (undecided > 0) {
-      return std::to_string(undecided) + (undecided == 1 ? " row is" : " rows are") +
-             " about to touch or to let go: the derivative is that of one side";
-    }
-    // Where points slide, going on and turning back are not the same.
-    if (w.system().has_lag() && !w.system().facets().remembering.empty())
-      return "there is friction: the derivative is that for changes so small that nothing slides";
-    return {};
-  }
 };
+
+World::Impl::Irregular World::Impl::irregular() {
+  constexpr double close = 1e-6;
+  const std::vector<double> theta = row_residuals();
+  const System& s = system();
+  std::vector<double> phi(theta.size());
+  assembly().row_values(phi);
+  Irregular out;
+  Index undecided = 0;
+  for (Index p = 0; s.has_bounds() && p < static_cast<Index>(s.parts().row_pools.size()); ++p) {
+    const RowPool& pool = *s.parts().row_pools[at(p)];
+    if (pool.law != RowLaw::compliant || (pool.lower.empty() && pool.upper.empty())) continue;
+    for (std::size_t k = 0; k < at(pool.rows()); ++k) {
+      const std::size_t r = at(s.first_row(p)) + k;
+      const double d = s.row_metric()[r], l = state.lambda[r];
+      const double lower = s.row_lower()[r], upper = s.row_upper()[r];
+      if (!std::isfinite(lower) && !std::isfinite(upper)) continue;
+      const double gap = (phi[r] - data->target()[r]) / s.row_measure()[r];
+      const double pull = std::min(std::abs(l - lower), std::abs(l - upper)) * d / s.row_measure()[r];
+      if (std::abs(gap) >= close || pull >= close) continue;
+      ++undecided;
+      const Index effect = pool.owner.empty() ? said.builder.owners().row_pool[at(p)] : pool.owner[k];
+      const std::string name = effect < 0 ? std::string(pool.name()) : said.sources[at(effect)]->name();
+      if (std::find(out.effects.begin(), out.effects.end(), name) == out.effects.end())
+        out.effects.push_back(name);
+    }
+  }
+  if (undecided > 0) {
+    out.note = std::to_string(undecided) + (undecided == 1 ? " row is" : " rows are") +
+               " about to touch or to let go: the derivative is that of one side";
+  } else if (s.has_lag() && !s.facets().remembering.empty()) {
+    // Where points slide, going on and turning back are not the same.
+    out.note = "there is friction: the derivative is that for changes so small that nothing slides";
+  }
+  return out;
+}
 
 std::array<Vec3, 2> World::Impl::reaction_of(Index effect, const State& at_state) const {
   std::array<Vec3, 2> sum = instances[at(effect)]->reaction({system(), at_state});
@@ -244,7 +254,7 @@ Result<std::vector<Response>> World::derivatives(std::span<const ResponseInput> 
     all.push_back(std::move(response).value());
   }
   // Last, as it evaluates the state.
-  const std::string note = all.empty() ? std::string() : d.irregular();
+  const std::string note = all.empty() ? std::string() : w.irregular().note;
   for (Response& r : all) {
     r.note = note;
     r.regular = note.empty();

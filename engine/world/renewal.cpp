@@ -114,6 +114,19 @@ Result<void> World::Impl::renew() {
   return {};
 }
 
+// The changed scene as it would be at the present state; nothing of this world changes.
+Result<BuiltParts> World::Impl::build_beside(Description& next) {
+  auto built = build_parts(next, options);
+  if (!built) return Error{built.error()};
+  SystemParts& parts = built.value().parts;
+  const SystemFacets facets(parts.stencil_pools, parts.row_pools);
+  if (facets.memory != layout.pools)
+    return Error{"the scene remembers other things then, so that there is no derivative"};
+  if (auto r = restore_stencils(facets, pool_memory(), parts); !r) return Error{r.error()};
+  carry_settings(instances, said, built.value().instances, next);
+  return built;
+}
+
 // The state of `other`, whose scene is this one's and whose tables are shared.
 Result<void> World::Impl::compile_like(Impl& other) {
   const Stopwatch watch(compile_report.seconds);

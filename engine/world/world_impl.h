@@ -15,6 +15,9 @@ struct ScenePart {
   std::uint64_t fingerprint = 0;
 };
 
+struct Equations;
+struct GaugeName;
+
 // Positions and velocities that a world has no more use for and that a host still looks at.
 struct LeftViews {
   std::vector<Vec3> x, v;
@@ -92,8 +95,16 @@ struct World::Impl {
   double law_energy();          // [J]
   // As World::reaction(), at another state, whose reactions are residual forces.
   std::array<Vec3, 2> reaction_of(Index effect, const State& at_state) const;
+  // Why derivatives at the state are those of one side; `effects`: whose rows are about to touch or to let
+  // go.
+  struct Irregular {
+    std::string note;
+    std::vector<std::string> effects;
+  };
+  Irregular irregular();
   // derivatives.cpp
   struct Derivatives;
+  struct Equilibrium;  // gradient_parts.h
   Result<Response> derivative(Derivatives& d, Amount* amount, PointInBody point, const Vec3& force);
 
   // checkpoint.cpp
@@ -105,7 +116,10 @@ struct World::Impl {
   void begin_state();
   Result<void> put_stencils_back();
   void take_over(State&& next) noexcept;
-  Result<void> compile_like(Impl& other);  // renewal.cpp
+  Result<void> compile_like(Impl& other);              // renewal.cpp
+  Result<BuiltParts> build_beside(Description& next);  // renewal.cpp
+  // The equations of a changed scene at the present state; one with other nodes, rows or memory is refused.
+  Result<Equations> equations_beside(Description next, std::span<const GaugeName> gauges_wanted);
 
  private:
   Result<void> compile_now();

@@ -30,6 +30,9 @@
 
 namespace isochor {
 
+struct GradientQuery;
+struct Gradients;
+
 // Stands for what the public headers say and for how the host's compiler lays it out.
 inline constexpr std::uint64_t kWorldAbi = [] {
   std::uint64_t abi = kPublicHeaders;
@@ -172,6 +175,9 @@ class ISOCHOR_API World {
   // dynamics it is that without inertia. One factorization, two solves an input. Refused where the matrix is
   // singular, and with methods that have no factors of all of it.
   Result<std::vector<Response>> derivatives(std::span<const ResponseInput> inputs);
+  // Gradients of numbers that the equilibrium shows by constants of materials and effects, stiffnesses of
+  // cells, densities, gravity, amounts and rest positions (gradients.h). The state stays as it is.
+  Result<Gradients> gradients(const GradientQuery& query);
   // Largest |phi - target - C lambda| of all rows, relative to their measure.
   double constitutive_residual() const;
   WorldSize size() const;

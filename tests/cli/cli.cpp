@@ -202,6 +202,24 @@ TEST_CASE("view makes the page of a folder from its frames") {
   CHECK((made.code != 0 || empty.err.find("0 .pvd files") != std::string::npos));
 }
 
+TEST_CASE("drive finds amounts, and says which targets are out of reach") {
+  Shell shell;
+  shell.write("block.json", kBlock);
+  shell.write("targets.csv", "time,tip.x\n1,2.05\n2,2.1\n");
+  const std::string drive = "drive block.json --targets targets.csv --out out";
+  const Outcome free = shell.run(drive + " --amount pull");
+  INFO(free.out << free.err);
+  CHECK(free.code == 0);
+  CHECK(free.out.find("2 of 2 targets reached") != std::string::npos);
+  for (const char* file : {"drive.csv", "drive.json", "summary.json", "steps.csv"})
+    CHECK(fs::exists(shell.folder() / "out" / file));
+  const Outcome bounded = shell.run(drive + " --amount pull=0:0.4");
+  CHECK(bounded.code == 3);
+  CHECK(bounded.out.find("nearest") != std::string::npos);
+  CHECK(shell.run(drive + " --amount wind").code == 2);
+  CHECK(shell.run("drive block.json --targets nowhere.csv --amount pull").code == 2);
+}
+
 TEST_CASE("check judges meshes") {
   Shell shell;
   const Outcome good = shell.run("check " ISOCHOR_SCENES "/meshes/tube.msh");

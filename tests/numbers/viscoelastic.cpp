@@ -7,6 +7,7 @@
 #include "engine/base/parallel.h"
 #include "engine/elements/relaxation_pool.h"
 #include "engine/system/assembly.h"
+#include "isochor/gradients.h"
 #include "support/compiled.h"
 #include "support/worlds.h"
 
@@ -470,4 +471,10 @@ TEST_CASE("series that mean nothing are refused") {
   CHECK(compiled_with(implicit_midpoint()).error().find("implicit_midpoint") != std::string::npos);
   CHECK(compiled_with(continuation()).error().find("no time") != std::string::npos);
   CHECK(compiled_with(implicit_euler()).ok());
+  Bar bar(test::static_options(), {{0, 0}, {1, 0.1}}, relaxing());
+  test::must_advance(bar.world, 1);
+  GradientQuery query;
+  query.outputs = {Output::elastic_energy()};
+  query.parameters = {Parameter::gravity({0, 0, 1})};
+  CHECK(bar.world.gradients(query).error().find("remembers") != std::string::npos);
 }

@@ -1,0 +1,97 @@
+// drive: amounts that bring probes to targets.
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+
+#include "apps/commands.h"
+#include "apps/table.h"
+#include "scenes/outputs.h"
+#include "scenes/run.h"
+#include "studies/drive/report.h"
+
+namespace isochor::app {
+
+namespace {
+
+std::atomic<int> g_signals{0};
+
+void on_signal(int) {
+  if (g_signals.fetch_add(1) > 0) _exit(interrupted);
+}
+
+int refuse(const std::string& what) {
+  std::fprintf(stderr, "isochor: %s\n", what.c_str());
+  return bad_input;
+}
+
+// The usual outputs are those of a run of the scene with the amounts that were found.
+Result<void> write(const DriveArguments& a, const std::string& folder, const SceneDef& scene,
+                   const drive::Drive& found) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return Error{folder + ": cannot be made: " + error.message() + "; choose another --out"};
+  if (const auto driven = drive::driven_scene(scene, found)) {
+    RunOptions options;
+    options.folder = folder;
+    options.threads = a.threads;
+    options.stop = [] { return g_signals > 0; };
+    const RunResult run = run_scene(driven.value(), options);
+    if (run.status == RunStatus::not_written) return Error{run.reason};
+    if (run.status != RunStatus::converged)
+      std::fprintf(stderr, "isochor: the run with the amounts found: %s\n", run.reason.c_str());
+  }
+  if (auto r = write_text(folder + "/drive.csv", drive::drive_csv(found)); !r) return r;
+  return write_text(folder + "/drive.json", drive::drive_json(found));
+}
+
+void print(const drive::Drive& found, const std::string& folder) {
+  Table table(drive::table_head(found));
+  table.numbers_from(2, found.actuators.size() + 1);
+  for (const drive::Reached& step : found.steps) table.add(drive::table_row(found, step));
+  std::printf("%s", table.text().c_str());
+  const auto reached = std::count_if(found.steps.begin(), found.steps.end(),
+                                     [](const drive::Reached& r) { return r.reached; });
+  std::printf("%td of %zu targets reached\n%s/drive.csv\n", reached, found.targets.time.size(),
+              folder.c_str());
+}
+
+}  // namespace
+
+int drive_scene(const DriveArguments& a) {
+  const auto scene = find_scene_named(a.scene, a.overrides);
+  if (!scene) return refuse(scene.error());
+  auto targets = drive::read_targets(a.targets, scene.value());
+  if (!targets) return refuse(targets.error());
+  std::vector<drive::Actuator> actuators;
+  for (const std::string& text : a.amounts) {
+    auto actuator = drive::parse_actuator(text);
+    if (!actuator) return refuse(actuator.error());
+    actuators.push_back(std::move(actuator).value());
+  }
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  drive::DriveOptions options;
+  options.tolerance = a.tolerance;
+  options.threads = a.threads;
+  options.stop = [] { return g_signals > 0; };
+  const auto found = drive::drive(scene.value(), std::move(actuators), std::move(targets).value(), options);
+  if (!found) return refuse(found.error());
+  const std::string folder = a.folder.empty() ? "out/drive/" + scene.value().name : a.folder;
+  if (auto r = write(a, folder, scene.value(), found.value()); !r) {
+    std::fprintf(stderr, "isochor: %s\n", r.error().c_str());
+    return not_written;
+  }
+  if (a.json)
+    std::printf("%s", drive::drive_json(found.value()).c_str());
+  else if (!a.quiet)
+    print(found.value(), folder);
+  if (found.value().interrupted || g_signals > 0) return interrupted;
+  if (!found.value().reason.empty()) std::fprintf(stderr, "isochor: %s\n", found.value().reason.c_str());
+  return found.value().all_reached() ? success : not_converged;
+}
+
+}  // namespace isochor::app

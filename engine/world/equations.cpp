@@ -1,0 +1,81 @@
+#include "engine/world/equations.h"
+
+#include <limits>
+
+#include "engine/solve/evaluator.h"
+
+namespace isochor {
+
+namespace {
+
+template <class T>
+void add_to(std::vector<T>& sum, double factor, const std::vector<T>& other) {
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += factor * other[i];
+}
+
+}  // namespace
+
+void Equations::add(double factor, const Equations& other) {
+  add_to(force, factor, other.force);
+  add_to(theta, factor, other.theta);
+  add_to(position, factor, other.position);
+  add_to(gauges, factor, other.gauges);
+  energy += factor * other.energy;
+}
+
+double gauge_value(const EffectInstance& effect, const std::string& quantity, const System& system,
+                   const State& state) {
+  std::vector<Gauge> all;
+  effect.gauges({system, state}, all);
+  for (const Gauge& g : all) {
+    if (g.quantity == quantity) return g.value;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+Equations equations_at(const EquationsAt& where, const State& state, std::span<const GaugeName> gauges) {
+  const System& s = where.system;
+  const SaddleProblem p = where.data.problem(s, state, state.t);
+  Assembly& assembly = where.assembly;
+  assembly.set_increment(p.increment, p.memory);
+  if (s.has_lag()) assembly.renew_lag(state.x, state.lambda, p.prescribed);
+  assembly.evaluate(Want::gradient, Definiteness::exact, state.x, state.lambda, p.prescribed);
+  Equations out(s);
+  assembly.residual(out.force);
+  for (std::size_t i = 0; i < out.force.size(); ++i) out.force[i] -= p.force[i];
+  assembly.row_values(out.theta);
+  for (std::size_t r = 0; r < out.theta.size(); ++r) out.theta[r] -= p.target[r];
+  add_compliance(s, -1, state.lambda, out.theta);
+  for (const LawPlace& law : s.laws()) {
+    const auto first = at(s.first_row(law.row_pool));
+    std::vector<double> strain(at(s.parts().row_pools[at(law.row_pool)]->rows()));
+    s.evaluate_law(law, p.increment.t0, p.increment.t1, p.memory, state.lambda, strain, {});
+    for (std::size_t r = 0; r < strain.size(); ++r) out.theta[first + r] -= strain[r];
+  }
+  out.energy = assembly.energy() + compliance_energy(s, state.lambda);
+  out.position.assign(p.position.begin(), p.position.end());
+  for (const GaugeName& g : gauges)
+    out.gauges.push_back(gauge_value(*where.instances[at(g.effect)], g.quantity, s, state));
+  return out;
+}
+
+Result<Equations> World::Impl::equations_beside(Description next, std::span<const GaugeName> gauges_wanted) {
+  auto built = build_beside(next);
+  if (!built) return built.failure();
+  SystemParts& parts = built.value().parts;
+  parts.treatment = system().parts().treatment;
+  parts.border_wide_rows = system().parts().border_wide_rows;
+  const std::vector<double> weight = gravity_mass(next.builder, parts, options);
+  auto compiled = System::compile(std::move(parts), &system());
+  if (!compiled) return compiled.failure();
+  const std::shared_ptr<const System> changed = std::move(compiled).value();
+  if (changed->nodes() != system().nodes() || changed->rows() != system().rows() ||
+      changed->prescribed_rows() != system().prescribed_rows() ||
+      changed->free_bases().size() != system().free_bases().size())
+    return Error{"the scene has other unknowns or rows then, so that there is no derivative"};
+  IncrementData its_data(*changed, amounts.gravity, state, weight);
+  Assembly its_assembly(changed, *parallel);
+  return equations_at({*changed, its_assembly, its_data, built.value().instances}, state, gauges_wanted);
+}
+
+}  // namespace isochor

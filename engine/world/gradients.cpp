@@ -1,0 +1,255 @@
+// Gradients of an equilibrium. Outline of a query:
+//   1. The state is looked at: forces and rows in balance? Then evaluated with Hessians and factored as it
+//   is.
+//   2. Every output becomes a right-hand side: how it depends on positions, multipliers and supports' forces.
+//   3. Adjoint: one solve an output; then each parameter is what the solution makes of the change dR/dp that
+//      it brings to the equations. Tangent: one solve a parameter with dR/dp; then each output along it.
+// The matrix is symmetric but where friction is coupled, so both use the same factors.
+#include "isochor/gradients.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/out_of_memory.h"
+#include "engine/base/text.h"
+#include "engine/step/time_scheme.h"
+#include "engine/world/gradient_parts.h"
+
+namespace isochor {
+
+namespace {
+
+double largest(std::span<const Vec3> list) {
+  double out = 0;
+  for (const Vec3& v : list) out = std::max(out, norm(v));
+  return out;
+}
+
+double largest(std::span<const double> list) {
+  double out = 0;
+  for (const double v : list) out = std::max(out, std::abs(v));
+  return out;
+}
+
+}  // namespace
+
+World::Impl::Equilibrium::Equilibrium(Impl& world)
+    : w(world),
+      method(world.methods.chosen()),
+      dx(world.state.x.size()),
+      dlambda(world.state.lambda.size()) {}
+
+// A state that was not solved for, or of a body in motion, has no derivative by these equations.
+Result<void> World::Impl::Equilibrium::check_balance() {
+  constexpr double limit = 1e-5;
+  const System& s = w.system();
+  here = equations_at(present(), w.state, gauges);
+  std::vector<double> magnitude(here.force.size());
+  w.assembly().residual_magnitude(magnitude);
+  // Where nothing is strained, forces are rounding errors of a stiff body.
+  constexpr double nothing = 1e-9;
+  force_scale_ = std::max(largest(magnitude), nothing * largest(method.rest_stiffness()) * s.length());
+  double force = 0, row = 0, position = 0;
+  for (Index i = 0; i < s.nodes(); ++i) {
+    Vec3 q = s.unknowns().to_free(i, here.force[at(i)]);
+    for (int c = s.unknowns().of(i); c < 3; ++c) q[c] = 0;
+    force = std::max(force, norm(q) / force_scale_);
+  }
+  for (std::size_t r = 0; r < here.theta.size(); ++r) {
+    double theta = here.theta[r];
+    if (s.has_bounds()) {
+      const double d = s.row_metric()[r], l = w.state.lambda[r];
+      theta = d * (std::clamp(l + theta / d, s.row_lower()[r], s.row_upper()[r]) - l);
+    }
+    row = std::max(row, std::abs(theta) / s.row_measure()[r]);
+  }
+  std::vector<Vec3> gap(s.free_bases().size());
+  for (Index i = 0; i < s.nodes(); ++i) {
+    if (const Index b = s.basis_of()[at(i)]; b >= 0) gap[at(b)] = here.position[at(b)] - w.state.x[at(i)];
+  }
+  position = largest(way_of(gap)) / s.length();
+  if (force <= limit && row <= limit && position <= limit) return {};
+  return Error{"gradients: the state is no equilibrium: forces are out of balance by " + number(force) +
+               " of the largest, rows by " + number(row) + " of their measure, supports by " +
+               number(position) + " of the scene's length; advance in statics until it is one"};
+}
+
+Result<void> World::Impl::Equilibrium::linearize(bool unstable) {
+  if (auto r = check_balance(); !r) return r;
+  if (!method.linearize(problem(), w.state.x, w.state.lambda, report)) {
+    if (report.status == SaddleStatus::converged) {
+      return Error{"gradients: method " + w.methods.description() +
+                   " has no factors of the whole system; leave WorldOptions::method automatic"};
+    }
+    return Error{"gradients: the matrix of the equilibrium is singular" +
+                 (report.message.empty() ? std::string() : " (" + report.message + ")") +
+                 ": a limit point, or a body that nothing holds; move the load away from there"};
+  }
+  const Index directions = report.negative_pivots < 0 ? 0 : report.negative_pivots - w.system().rows();
+  if (directions == 0 || unstable) return {};
+  return Error{"gradients: the equilibrium is unstable in " + std::to_string(directions) +
+               (directions == 1 ? " direction" : " directions") +
+               " (behind a limit point, or buckled); set GradientQuery::unstable if that is meant"};
+}
+
+// The step of the same problem with other loads, targets and given positions.
+Result<void> World::Impl::Equilibrium::respond(double factor, std::span<const Vec3> load,
+                                               std::span<const double> row, std::span<const Vec3> way,
+                                               std::vector<Vec3>& x, std::vector<double>& lambda) {
+  SaddleProblem p = problem();
+  std::vector<Vec3> force(p.force.begin(), p.force.end()), position(p.position.begin(), p.position.end());
+  std::vector<double> target(p.target.begin(), p.target.end());
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] += factor * load[i];
+  for (std::size_t r = 0; r < target.size(); ++r) target[r] += factor * row[r];
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    if (const Index b = w.system().basis_of()[i]; b >= 0) position[at(b)] += factor * way[i];
+  }
+  p.force = force;
+  p.target = target;
+  p.position = position;
+  if (!method.respond(p, x, lambda, report)) return Error{"gradients: the linear system was not solved"};
+  return {};
+}
+
+// What is solved is linear in the right-hand side; the difference of two steps is free of what the state
+// itself is off.
+Result<void> World::Impl::Equilibrium::solve(std::span<const Vec3> load, std::span<const double> row,
+                                             std::span<const Vec3> way) {
+  // As large as the numbers that it is added to.
+  double scale = std::numeric_limits<double>::infinity();
+  const auto take = [&](double part, double size) {
+    if (part > 0 && size > 0) scale = std::min(scale, size / part);
+  };
+  take(largest(load), force_scale_);
+  take(largest(row),
+       row.empty() ? 0 : *std::max_element(w.system().row_measure().begin(), w.system().row_measure().end()));
+  take(largest(way), w.system().length());
+  if (!std::isfinite(scale)) {
+    std::fill(dx.begin(), dx.end(), Vec3{});
+    std::fill(dlambda.begin(), dlambda.end(), 0.0);
+    return {};
+  }
+  std::vector<Vec3> x(dx.size());
+  std::vector<double> lambda(dlambda.size());
+  if (auto r = respond(scale, load, row, way, dx, dlambda); !r) return r;
+  if (auto r = respond(-scale, load, row, way, x, lambda); !r) return r;
+  for (std::size_t i = 0; i < x.size(); ++i) dx[i] = (0.5 / scale) * (dx[i] - x[i]);
+  for (std::size_t r = 0; r < lambda.size(); ++r) dlambda[r] = (0.5 / scale) * (dlambda[r] - lambda[r]);
+  return {};
+}
+
+namespace {
+
+bool is_cells(const Parameter& p) {
+  return p.kind == Parameter::Kind::cells;
+}
+
+// Whether outputs are solved for, or parameters.
+Result<bool> choose_adjoint(const GradientQuery& q, bool unsymmetric) {
+  const bool cells = std::any_of(q.parameters.begin(), q.parameters.end(), is_cells);
+  const bool wants_adjoint = q.mode == GradientQuery::Mode::adjoint;
+  if (unsymmetric && (cells || wants_adjoint)) {
+    return Error{
+        "gradients: with friction the matrix is unsymmetric, and the adjoint is not among what gradients() "
+        "knows; ask for tangents, of whole regions in place of cells"};
+  }
+  if (cells && q.mode == GradientQuery::Mode::tangent)
+    return Error{
+        "gradients: cell_stiffness is a number a cell, and tangents would solve as often; ask by the "
+        "adjoint"};
+  if (cells || wants_adjoint) return true;
+  if (unsymmetric || q.mode == GradientQuery::Mode::tangent) return false;
+  return q.outputs.size() <= q.parameters.size();
+}
+
+}  // namespace
+
+Result<Gradients> World::gradients(const GradientQuery& query) try {
+  Impl& w = *impl_;
+  if (auto r = w.compile(); !r) return r.failure();
+  if (w.settled)
+    return Error{"gradients: the state is unfinished, no equilibrium; take a step without a budget first"};
+  if (w.options.scheme->has_inertia()) {
+    return Error{
+        "gradients: the scheme has inertia; gradients are those of statics, so make the world with "
+        "statics() or continuation()"};
+  }
+  for (const BodyData& body : w.said.builder.bodies()) {
+    for (const RegionData& region : body.regions) {
+      if (!body.present() || region.memory_pools.empty()) continue;
+      return Error{"gradients: body \"" + body.name + "\", region \"" + region.name + "\": the material " +
+                   std::string(region.material->name()) +
+                   " remembers what came before, which gradients do not follow; make its statics long-term"};
+    }
+  }
+  const auto check_effect = [&](EffectId e) -> Result<void> {
+    if (auto r = check(e); !r) return Error{"gradients: " + r.error()};
+    return {};
+  };
+  Impl::Equilibrium eq(w);
+  for (const Output& o : query.outputs) {
+    const bool of_effect = o.kind == Output::Kind::gauge || o.kind == Output::Kind::reaction;
+    if (!of_effect) continue;
+    if (auto r = check_effect(o.effect); !r) return r.failure();
+    if (o.kind == Output::Kind::gauge) eq.gauges.push_back({static_cast<Index>(o.effect), o.quantity});
+  }
+  for (const Parameter& p : query.parameters) {
+    const bool of_effect = p.kind == Parameter::Kind::amount || p.kind == Parameter::Kind::constant;
+    if (!of_effect) continue;
+    if (auto r = check_effect(p.effect); !r) return r.failure();
+  }
+  const auto adjoint = choose_adjoint(query, w.system().has_lag());
+  if (!adjoint) return adjoint.failure();
+  if (auto r = eq.linearize(query.unstable); !r) return r.failure();
+
+  Gradients out;
+  out.adjoint = adjoint.value();
+  std::vector<OutputSeed> seeds;
+  for (const Output& o : query.outputs) {
+    auto seed = eq.seed_of(o);
+    if (!seed) return seed.failure();
+    out.values.push_back(seed.value().value);
+    seeds.push_back(std::move(seed).value());
+  }
+  std::vector<Adjoint> adjoints;
+  for (std::size_t j = 0; out.adjoint && j < seeds.size(); ++j) {
+    auto a = eq.adjoint_of(seeds[j]);
+    if (!a) return a.failure();
+    adjoints.push_back(std::move(a).value());
+  }
+  out.by.assign(seeds.size(), std::vector<std::vector<double>>(query.parameters.size()));
+  for (std::size_t k = 0; k < query.parameters.size(); ++k) {
+    const Parameter& p = query.parameters[k];
+    if (is_cells(p)) {
+      for (std::size_t j = 0; j < seeds.size(); ++j) {
+        auto cells = eq.by_cells(seeds[j], adjoints[j], p.body);
+        if (!cells) return cells.failure();
+        out.by[j][k] = std::move(cells).value();
+      }
+      continue;
+    }
+    auto change = eq.change_by(p);
+    if (!change) return change.failure();
+    if (!out.adjoint) {
+      Equations load(w.system(), eq.gauges.size());
+      load.add(-1, change.value());
+      if (auto r = eq.solve(load.force, load.theta, eq.way_of(change.value().position)); !r)
+        return r.failure();
+    }
+    for (std::size_t j = 0; j < seeds.size(); ++j) {
+      out.by[j][k] = {out.adjoint ? eq.by_adjoint(seeds[j], adjoints[j], change.value())
+                                  : eq.by_tangent(seeds[j], change.value())};
+    }
+  }
+  // Last, as it evaluates the state.
+  auto irregular = w.irregular();
+  out.regular = irregular.note.empty();
+  out.note = std::move(irregular.note);
+  out.undecided = std::move(irregular.effects);
+  return out;
+} catch (const std::bad_alloc&) {
+  impl_->methods.drop();
+  return Error{out_of_memory("gradients")};
+}
+
+}  // namespace isochor

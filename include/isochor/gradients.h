@@ -1,0 +1,115 @@
+// Gradients of what an equilibrium shows by what the scene is made of. docs/derivatives.md has the formulas,
+// what is supported, and what it costs.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "isochor/effects/effect.h"
+#include "isochor/export.h"
+#include "isochor/ids.h"
+#include "isochor/materials.h"
+#include "isochor/types.h"
+
+namespace isochor {
+
+// A number J that an equilibrium shows.
+struct ISOCHOR_API Output {
+  enum class Kind : std::uint8_t { positions, distance, gauge, reaction, energy };
+  Kind kind = Kind::positions;
+  BodyId body{};
+  EffectId effect{};
+  std::vector<Index> nodes;   // of the body
+  std::vector<Vec3> vectors;  // weights or targets, one a node
+  Vec3 point{};               // at rest [m], in place of nodes
+  bool at_point = false;
+  std::string quantity;  // of the gauge
+  Vec3 force{}, moment{};
+
+  // Sum of weight . x over nodes: every linear function of positions.
+  static Output positions(BodyId body, std::vector<Index> nodes, std::vector<Vec3> weights);
+  // direction . x of a node, or of the material point that is at `point` at rest.
+  static Output node(BodyId body, Index node, const Vec3& direction);
+  static Output material_point(BodyId body, const Vec3& point, const Vec3& direction);
+  // Half the sum of |x - target|^2 over nodes.
+  static Output distance(BodyId body, std::vector<Index> nodes, std::vector<Vec3> targets);
+  // A gauge of World::gauges(): the volume or pressure of a cavity, the tension or length of a cable.
+  static Output gauge(EffectId effect, std::string quantity);
+  // force . F + moment . M of the reaction (F, M) of a support, as World::reaction().
+  static Output reaction(EffectId effect, const Vec3& force, const Vec3& moment = {});
+  // World::elastic_energy().
+  static Output elastic_energy();
+};
+
+// A number p of the scene, or a list of them.
+struct ISOCHOR_API Parameter {
+  enum class Kind : std::uint8_t {
+    amount,
+    force,
+    gravity,
+    density,
+    material,
+    stiffness,
+    cells,
+    constant,
+    shape
+  };
+  Kind kind = Kind::amount;
+  EffectId effect{};
+  BodyId body{};
+  std::string region;  // empty: all of the body
+  double value = 0;    // where it is now
+  // How far it is moved where a difference is taken; 0: 1e-4 of its value, and of amounts of at least 1.
+  double step = 0;
+  Vec3 point{}, vector{};
+  std::vector<Vec3> motion;  // one a node
+  std::function<Result<MaterialPtr>(double)> law;
+  std::function<EffectPtr(double)> definition;
+
+  // The amount of an effect, in its unit.
+  static Parameter amount_of(EffectId effect);
+  // A dead force on a point of a body, times a factor: `force` is the unit [N].
+  static Parameter force_at(BodyId body, const Vec3& point, const Vec3& force);
+  // Gravity along a direction [m/s^2]; the length of `direction` is the unit.
+  static Parameter gravity(const Vec3& direction);
+  static Parameter density(BodyId body, std::string region = {});  // [kg/m^3]
+  // A constant of a material: `law` makes it, `value` is where the constant is now, and law(value) must be
+  // the material that the region has. Laws may be refused on one side of `value` (nu = 0.5).
+  static Parameter material(BodyId body, std::string region, double value,
+                            std::function<Result<MaterialPtr>(double)> law);
+  // A factor on the stiffness of a region, at 1: energy and bulk modulus, as with_stiffness_field() has it.
+  static Parameter stiffness(BodyId body, std::string region = {});
+  // The same of each cell by itself: as many numbers as the mesh of the body has cells. By the adjoint alone.
+  static Parameter cell_stiffness(BodyId body);
+  // A constant of an effect: `definition` makes it, and definition(value) must be the effect as it is.
+  static Parameter constant_of(EffectId effect, double value, std::function<EffectPtr(double)> definition);
+  // Rest positions move by p times `motion`, one vector a node of World::mesh(body).
+  static Parameter shape(BodyId body, std::vector<Vec3> motion);
+};
+
+struct GradientQuery {
+  std::vector<Output> outputs;
+  std::vector<Parameter> parameters;
+  // adjoint: one solve an output; tangent: one solve a parameter. automatic: whichever solves less.
+  enum class Mode : std::uint8_t { automatic, adjoint, tangent };
+  Mode mode = Mode::automatic;
+  // Equilibria that are unstable under fixed loads have gradients too; they are refused unless asked for.
+  bool unstable = false;
+};
+
+struct Gradients {
+  std::vector<double> values;  // of the outputs
+  // dJ/dp: [output][parameter][number of the parameter], one number but for cell_stiffness.
+  std::vector<std::vector<std::vector<double>>> by;
+  // False: rows are about to touch or to let go, so that the derivative is that of one side, or friction
+  // holds on to what it pulls with. `note` says it in words, `undecided` names the effects of such rows.
+  bool regular = true;
+  std::string note;
+  std::vector<std::string> undecided;
+  bool adjoint = false;  // how it was found
+
+  double of(std::size_t output, std::size_t parameter) const { return by[output][parameter].front(); }
+};
+
+}  // namespace isochor

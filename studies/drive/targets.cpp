@@ -1,0 +1,129 @@
+#include "studies/drive/targets.h"
+
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "engine/base/text.h"
+
+namespace isochor::drive {
+
+namespace {
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::stringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) {
+    const auto first = cell.find_first_not_of(" \t\r");
+    const auto last = cell.find_last_not_of(" \t\r");
+    cells.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
+  }
+  return cells;
+}
+
+std::string probes_of(const SceneDef& scene) {
+  std::string names;
+  for (const ProbeDef& p : scene.probes) names += (names.empty() ? "\"" : ", \"") + p.name + "\"";
+  return names.empty() ? "none; add one to the scene" : names;
+}
+
+Result<Goal> goal_of(const std::string& name, const SceneDef& scene, const std::string& who) {
+  const auto dot = name.rfind('.');
+  const std::string axes = "xyz", component = dot == std::string::npos ? "" : name.substr(dot + 1);
+  if (component.size() != 1 || axes.find(component) == std::string::npos) {
+    return Error{who + "column \"" + name +
+                 "\": columns are \"time\" and components of probes, such as \"tip.x\""};
+  }
+  for (std::size_t p = 0; p < scene.probes.size(); ++p) {
+    if (scene.probes[p].name == name.substr(0, dot))
+      return Goal{name, p, static_cast<int>(axes.find(component))};
+  }
+  return Error{who + "column \"" + name + "\": the scene has no probe \"" + name.substr(0, dot) +
+               "\"; it has " + probes_of(scene)};
+}
+
+Result<double> number_in(const std::string& cell, const std::string& who) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
+    return Error{who + "\"" + cell + "\" is no finite number; give one in every column"};
+  return value;
+}
+
+Result<std::size_t> read_header(const std::vector<std::string>& header, const SceneDef& scene,
+                                const std::string& who, Targets& out) {
+  std::size_t time = header.size();
+  for (std::size_t c = 0; c < header.size(); ++c) {
+    for (std::size_t k = 0; k < c; ++k) {
+      if (header[k] == header[c]) return Error{who + "column \"" + header[c] + "\" is there twice; keep one"};
+    }
+    if (header[c] == "time") {
+      time = c;
+      continue;
+    }
+    auto goal = goal_of(header[c], scene, who);
+    if (!goal) return Error{goal.error()};
+    out.goals.push_back(std::move(goal).value());
+  }
+  if (time == header.size()) return Error{who + "there is no column \"time\"; add one"};
+  if (out.goals.empty())
+    return Error{who + "there is no target; add a column for a component of a probe, such as \"tip.x\""};
+  return time;
+}
+
+}  // namespace
+
+Result<Targets> parse_targets(const std::string& text, const std::string& source, const SceneDef& scene) {
+  Targets out;
+  std::stringstream lines(text);
+  std::string line;
+  int number_of_line = 0;
+  std::size_t time = 0, columns = 0;
+  while (std::getline(lines, line)) {
+    ++number_of_line;
+    const std::vector<std::string> cells = cells_of(line);
+    if (cells.empty() || (cells.size() == 1 && cells[0].empty())) continue;
+    const std::string who = source + ", line " + std::to_string(number_of_line) + ": ";
+    if (columns == 0) {
+      auto found = read_header(cells, scene, who, out);
+      if (!found) return Error{found.error()};
+      time = found.value();
+      columns = cells.size();
+      continue;
+    }
+    if (cells.size() != columns) {
+      return Error{who + std::to_string(cells.size()) + " columns, the header has " +
+                   std::to_string(columns) + "; give a number in each"};
+    }
+    std::vector<double> goals;
+    for (std::size_t c = 0; c < columns; ++c) {
+      auto value = number_in(cells[c], who);
+      if (!value) return Error{value.error()};
+      if (c != time) {
+        goals.push_back(value.value());
+        continue;
+      }
+      const double before = out.time.empty() ? 0 : out.time.back();
+      if (!(value.value() > before)) {
+        return Error{who + "time " + number(value.value()) + " is not after " + number(before) +
+                     "; times of the scene ascend, and it begins at 0"};
+      }
+      out.time.push_back(value.value());
+    }
+    out.value.push_back(std::move(goals));
+  }
+  if (columns == 0) return Error{source + ": it is empty; the first line names the columns"};
+  if (out.time.empty()) return Error{source + ": there is no target; add lines below the header"};
+  return out;
+}
+
+Result<Targets> read_targets(const std::string& path, const SceneDef& scene) {
+  std::ifstream file(path);
+  if (!file) return Error{path + ": cannot be opened; mind the path"};
+  std::stringstream text;
+  text << file.rdbuf();
+  return parse_targets(text.str(), path, scene);
+}
+
+}  // namespace isochor::drive
