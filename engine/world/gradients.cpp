@@ -31,6 +31,18 @@ double largest(std::span<const double> list) {
   return out;
 }
 
+Result<void> check_memory(const Builder& builder) {
+  for (const BodyData& body : builder.bodies()) {
+    for (const RegionData& region : body.regions) {
+      if (!body.present() || region.memory_pools.empty()) continue;
+      return Error{"gradients: body \"" + body.name + "\", region \"" + region.name + "\": the material " +
+                   std::string(region.material->name()) +
+                   " remembers what came before, which gradients do not follow; make its statics long-term"};
+    }
+  }
+  return {};
+}
+
 }  // namespace
 
 World::Impl::Equilibrium::Equilibrium(Impl& world)
@@ -174,14 +186,7 @@ Result<Gradients> World::gradients(const GradientQuery& query) try {
         "gradients: the scheme has inertia; gradients are those of statics, so make the world with "
         "statics() or continuation()"};
   }
-  for (const BodyData& body : w.said.builder.bodies()) {
-    for (const RegionData& region : body.regions) {
-      if (!body.present() || region.memory_pools.empty()) continue;
-      return Error{"gradients: body \"" + body.name + "\", region \"" + region.name + "\": the material " +
-                   std::string(region.material->name()) +
-                   " remembers what came before, which gradients do not follow; make its statics long-term"};
-    }
-  }
+  if (auto r = check_memory(w.said.builder); !r) return r.failure();
   const auto check_effect = [&](EffectId e) -> Result<void> {
     if (auto r = check(e); !r) return Error{"gradients: " + r.error()};
     return {};
