@@ -174,7 +174,10 @@ bool is_isolated(const SceneDef& s) {
       std::any_of(s.surface_contacts.begin(), s.surface_contacts.end(), [](const SurfaceContactDef& c) {
         return c.initial_overlap == InitialOverlap::resolve || c.thickness > 0;
       });
-  return !driven && !squeezed && std::none_of(s.dirichlet.begin(), s.dirichlet.end(), moves);
+  // A winding that is longer than its way and may push does so from the start.
+  const bool wound = std::any_of(s.windings.begin(), s.windings.end(),
+                                 [](const WindingDef& w) { return w.slack != 0 && !w.pulls_only; });
+  return !driven && !squeezed && !wound && std::none_of(s.dirichlet.begin(), s.dirichlet.end(), moves);
 }
 
 // Rest area of a surface of flat triangles; nothing for other faces.
