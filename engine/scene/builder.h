@@ -165,7 +165,7 @@ struct RegionData {
   // Pools that were built for it.
   std::shared_ptr<const Material> energy;  // of elastic_pool
   Index elastic_pool = -1;
-  std::vector<Index> memory_pools;  // on the stencils of elastic_pool
+  std::vector<Index> memory_pools;                                    // on the stencils of elastic_pool
   Index guard_pool = -1;                                              // of edge-smoothed bodies
   std::array<Index, kVolumeStrains> volume_pool{-1, -1, -1, -1, -1};  // by VolumeStrain
   std::array<bool, kVolumeStrains> volume_wanted{};
