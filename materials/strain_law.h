@@ -2,10 +2,10 @@
 // stress at rest, and of those of J^(-1/3) F; each with a volume part U(J).
 #pragma once
 
+#include "engine/math/lane_functions.h"
 #include "isochor/materials.h"
 #include "materials/elastic_constants.h"
 #include "materials/energy_model.h"
-#include "engine/math/lane_functions.h"
 #include "materials/strain_batch.h"
 
 namespace isochor {
