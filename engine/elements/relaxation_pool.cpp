@@ -45,6 +45,21 @@ void in_frame(const Lanes V[9], const Lanes d[3], Lanes C[9]) {
 
 }  // namespace
 
+template <class Visit>
+void RelaxationPool::for_batches(Index begin, Index end, int points, const Visit& visit) {
+  Point batch[kLanes];
+  int count = 0;
+  for (Index s = begin; s < end; ++s) {
+    for (int q = 0; q < points; ++q) {
+      batch[count++] = {s, q};
+      if (count < kLanes) continue;
+      visit(batch, count);
+      count = 0;
+    }
+  }
+  if (count > 0) visit(batch, count);
+}
+
 RelaxationPool::RelaxationPool(std::string name, std::shared_ptr<const SolidData> data,
                                std::shared_ptr<const Material> spring, double time)
     : name_(std::move(name)),
@@ -65,13 +80,17 @@ RelaxationPool::Flow RelaxationPool::flow(const StencilIncrement& increment) con
   const double dt = increment.h > 0 ? increment.h : increment.t1 - increment.t0;
   if (!(dt > 0)) return {};
   const double x = dt / time_;
+  // Of times that are far apart the quotient is out of the range of numbers, or next to it.
+  constexpr double nothing = 1e-300, all = 700;
+  if (!(x > nothing)) return {};
+  if (x > all) return {0, std::isfinite(x) ? 1 / x : 0};
   return {x / std::expm1(x), -std::expm1(-x) / x};
 }
 
 // Both steps up to the end of the stretch.
 void RelaxationPool::stretch(const StencilRequest& request, const Flow& flow, const Point* points, int count,
                              Batch& batch) const {
-  Lanes F[9] = {}, kept[9] = {}, strain[6] = {};
+  Lanes F[9] = {}, kept[9] = {}, axes[9] = {}, strain[3] = {};
   for (int l = 0; l < kLanes; ++l) {
     const Point& p = points[std::min(l, count - 1)];
     double at_point[9], unused = 0;
@@ -81,16 +100,17 @@ void RelaxationPool::stretch(const StencilRequest& request, const Flow& flow, co
     if (request.memory.empty()) continue;
     const double* m = request.memory.data() + kNumbers * (at(p.stencil * data_->points) + at(p.point));
     for (int i = 0; i < 9; ++i) kept[i][l] += m[i];
-    for (int i = 0; i < 6; ++i) strain[i][l] = m[9 + i];
+    for (int i = 0; i < 9; ++i) axes[i][l] = m[9 + i];
+    for (int i = 0; i < 3; ++i) strain[i][l] = m[18 + i];
   }
+  std::copy_n(kept, 9, batch.viscous);
   if (flow.before < 1) {
-    Lanes values[3], Q[9], shrunk[9];
-    symmetric_eigen3(strain, values, Q);
-    for (Lanes& v : values) v = exp((flow.before - 1) * v);
-    in_frame(Q, values, shrunk);
-    multiply(kept, shrunk, batch.viscous);
-  } else {
-    std::copy_n(kept, 9, batch.viscous);
+    // What is left of it, less one: nothing where there are no axes yet.
+    Lanes change[9], flowed[9];
+    for (Lanes& v : strain) v = expm1((flow.before - 1) * v);
+    in_frame(axes, strain, change);
+    multiply(kept, change, flowed);
+    for (int i = 0; i < 9; ++i) batch.viscous[i] += flowed[i];
   }
   multiply(F, batch.viscous, batch.elastic);
 }
@@ -105,17 +125,8 @@ void RelaxationPool::evaluate(const StencilRequest& request, const StencilSlots&
       std::fill_n(slots.hessian.begin() + hessian_offset()[at(s)], n * (n + 1) / 2, Mat3{});
   }
   const Flow f = flow(request.increment);
-  Point points[kLanes];
-  int count = 0;
-  for (Index s = request.begin; s < request.end; ++s) {
-    for (int q = 0; q < data_->points; ++q) {
-      points[count++] = {s, q};
-      if (count < kLanes) continue;
-      flush(request, slots, f, points, count);
-      count = 0;
-    }
-  }
-  if (count > 0) flush(request, slots, f, points, count);
+  for_batches(request.begin, request.end, data_->points,
+              [&](const Point* points, int count) { flush(request, slots, f, points, count); });
 }
 
 // The springs at F_e: energy and its derivatives in F_e.
@@ -174,7 +185,7 @@ void RelaxationPool::flush(const StencilRequest& request, const StencilSlots& sl
     slots.energy[at(s)] += w * response.psi[l];
     if (request.want == Want::value) continue;
     // dF_e = dF F_v^-1: in place of B the nodes have F_v^-T B.
-    constexpr std::size_t most = 64;
+    constexpr std::size_t most = 256;
     const std::size_t n = nodes_[s].size();
     const auto first = at(nodes_.offset[at(s)]);
     const Vec3* B = data_->gradient.data() + static_cast<std::size_t>(data_->points) * first +
@@ -199,17 +210,8 @@ void RelaxationPool::flush(const StencilRequest& request, const StencilSlots& sl
 
 void RelaxationPool::accept(const StencilRequest& request, std::span<double> memory) const {
   const Flow f = flow(request.increment);
-  Point points[kLanes];
-  int count = 0;
-  for (Index s = 0; s < nodes_.count(); ++s) {
-    for (int q = 0; q < data_->points; ++q) {
-      points[count++] = {s, q};
-      if (count < kLanes) continue;
-      keep(request, f, points, count, memory);
-      count = 0;
-    }
-  }
-  if (count > 0) keep(request, f, points, count, memory);
+  for_batches(0, nodes_.count(), data_->points,
+              [&](const Point* points, int count) { keep(request, f, points, count, memory); });
 }
 
 // The last flow, and what the next increment has to know.
@@ -219,7 +221,7 @@ void RelaxationPool::keep(const StencilRequest& request, const Flow& flow, const
   stretch(request, flow, points, count, batch);
   Svd3 svd;
   svd3(batch.elastic, svd);
-  Lanes e[3], grown[3], left[3], shrink[9], viscous[9], strain[9];
+  Lanes e[3], grown[3], left[3], shrink[9], viscous[9];
   for (int i = 0; i < 3; ++i) e[i] = log(svd.sigma[i]);
   const Lanes mean = (e[0] + e[1] + e[2]) * (1.0 / 3);
   for (int i = 0; i < 3; ++i) {
@@ -229,13 +231,12 @@ void RelaxationPool::keep(const StencilRequest& request, const Flow& flow, const
   }
   in_frame(svd.V, grown, shrink);
   multiply(batch.viscous, shrink, viscous);
-  in_frame(svd.V, left, strain);
-  constexpr int packed_from[6] = {0, 4, 8, 1, 2, 5};
   for (int l = 0; l < count; ++l) {
     double* m = memory.data() + kNumbers * (at(points[l].stencil * data_->points) + at(points[l].point));
     if (!(svd.sigma[2][l] > 0)) continue;  // no state that a step is accepted with
     for (int i = 0; i < 9; ++i) m[i] = viscous[i][l] - (i % 4 == 0 ? 1 : 0);
-    for (int i = 0; i < 6; ++i) m[9 + i] = strain[packed_from[i]][l];
+    for (int i = 0; i < 9; ++i) m[9 + i] = svd.V[i][l];
+    for (int i = 0; i < 3; ++i) m[18 + i] = left[i][l];
   }
 }
 

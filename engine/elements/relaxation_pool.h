@@ -15,9 +15,9 @@
 // away, whatever the increment: dissipation is never negative. The stress at the end is 2 mu q e, the
 // derivative of q psi_e(F F_v^-1): an increment has a potential, and its matrices are symmetric.
 //
-// Memory, for each point: F_v^-1 - 1 (9 numbers, row-major) and the elastic logarithmic strain in the frame
-// of the intermediate configuration (6, packed 00, 11, 22, 01, 02, 12); zero is a solid that has rested
-// forever.
+// Memory, for each point: F_v^-1 - 1 (9 numbers, row-major), and the elastic logarithmic strain in the frame
+// of the intermediate configuration by its axes (9, row-major, in columns) and its values (3), so that no
+// increment has to find them again. Zero is a solid that has rested forever.
 #pragma once
 
 #include "engine/elements/solid_pool.h"
@@ -26,7 +26,7 @@ namespace isochor {
 
 class RelaxationPool final : public StencilPool, public RememberingStencils {
  public:
-  static constexpr int kNumbers = 15;  // of memory, a point
+  static constexpr int kNumbers = 21;  // of memory, a point
 
   // `spring`: isotropic, without a volume part. `time`: tau [s] > 0.
   RelaxationPool(std::string name, std::shared_ptr<const SolidData> data,
@@ -48,6 +48,9 @@ class RelaxationPool final : public StencilPool, public RememberingStencils {
   struct Point;
   struct Flow;
   struct Batch;
+  // visit(points, count) for all points of stencils [begin, end), in batches.
+  template <class Visit>
+  static void for_batches(Index begin, Index end, int points, const Visit& visit);
   Flow flow(const StencilIncrement& increment) const;
   void stretch(const StencilRequest& request, const Flow& flow, const Point* points, int count,
                Batch& batch) const;

@@ -178,6 +178,28 @@ TEST_CASE("every scheme of dynamics sees the same solid where nothing has mass t
   }
 }
 
+TEST_CASE("relaxation times next to nothing and next to forever") {
+  constexpr double e = 0.2, share = 0.3;
+  ElasticConstants c;
+  c.mu = kMu;
+  c.bulk = std::numeric_limits<double>::infinity();
+  for (const double time : {5e-324, 1e-310, 1e-300, 1e-12, 1e12, 1e300, 1.7e308}) {
+    const MaterialPtr solid =
+        value(with_prony_series(value(isochoric_neo_hookean(c)), {{share, time}}, StaticTime::seconds));
+    for (const double end : {1e-20, 1.0, 1e9}) {
+      Bar bar(test::static_options(), {{0, 0}, {end, e}, {2 * end, e}}, solid);
+      INFO("time " << time << ", end " << end);
+      test::must_advance(bar.world, end);
+      test::must_advance(bar.world, end);
+      const double x = end / time, stretch = std::exp(e);
+      const double left = x > 1e3 ? 0 : (x < 1e-9 ? 1 : -std::expm1(-x) / x * std::exp(-x));
+      const double exact =
+          (1 - share) * kMu * (stretch - 1 / (stretch * stretch)) + 3 * share * kMu * left * e / stretch;
+      CHECK(bar.force() == Approx(exact).epsilon(1e-6));
+    }
+  }
+}
+
 TEST_CASE("statics are long-term unless they are in seconds") {
   constexpr double e = 0.2;
   Bar bar(test::static_options(), {{0, 0}, {1, e}}, relaxing(StaticTime::long_term));
