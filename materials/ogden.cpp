@@ -5,27 +5,20 @@
 
 #include "engine/base/text.h"
 #include "materials/strain_law.h"
+#include "materials/stretch_lanes.h"
 
 namespace isochor {
 
 namespace {
 
-// Powers of smaller stretches leave the range of numbers; no material gets there.
-constexpr double kLeastStretch = 1e-30;
-
 struct OgdenLaw {
   std::vector<OgdenTerm> terms;
   bool isochoric = false;
   VolumeTerms volume;
+  StretchLanes respond(Want want, const Lanes s[3]) const;
 };
 
-// Derivatives over the principal stretches, see Spectrum; d: Psi_i.
-struct StretchLanes {
-  Lanes psi{}, d[3]{};
-  Spectrum second{};
-};
-
-StretchLanes respond(const OgdenLaw& law, Want want, const Lanes s[3]) {
+StretchLanes OgdenLaw::respond(Want want, const Lanes s[3]) const {
   StretchLanes r;
   Lanes log_s[3], inverse[3], log_J = {};
   for (int i = 0; i < 3; ++i) {
@@ -33,10 +26,10 @@ StretchLanes respond(const OgdenLaw& law, Want want, const Lanes s[3]) {
     inverse[i] = 1 / s[i];
     log_J += log_s[i];
   }
-  const Lanes mean = law.isochoric ? log_J * (1.0 / 3) : Lanes{};
+  const Lanes mean = isochoric ? log_J * (1.0 / 3) : Lanes{};
   // m_i = s_i dW/ds_i and n_i = s_i dm_i/ds_i of the strain part alone.
   Lanes m[3] = {}, n[3] = {};
-  for (const OgdenTerm& t : law.terms) {
+  for (const OgdenTerm& t : terms) {
     Lanes power[3];
     for (int i = 0; i < 3; ++i) {
       const Lanes growth = expm1(t.alpha * (log_s[i] - mean));
@@ -55,75 +48,33 @@ StretchLanes respond(const OgdenLaw& law, Want want, const Lanes s[3]) {
     }
   }
   // With the part of J^(-1/3): t_i = Psi_i s_i and its derivatives h.
-  const Lanes q = law.isochoric ? (m[0] + m[1] + m[2]) * (-1.0 / 3) : Lanes{};
+  const Lanes q = isochoric ? (m[0] + m[1] + m[2]) * (-1.0 / 3) : Lanes{};
   Lanes t[3];
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    t[i] = law.isochoric ? (2 * m[i] - m[j] - m[k]) * (1.0 / 3) : m[i];
+    t[i] = isochoric ? (2 * m[i] - m[j] - m[k]) * (1.0 / 3) : m[i];
     r.d[i] = t[i] * inverse[i];
   }
   StrainResponse u;
   const Lanes J = s[0] * s[1] * s[2], g[3] = {s[1] * s[2], s[2] * s[0], s[0] * s[1]};
-  law.volume.add(J, log_J, u);
+  volume.add(J, log_J, u);
   r.psi += u.psi;
-  const Lanes all = law.isochoric ? (n[0] + n[1] + n[2]) * (1.0 / 9) : Lanes{};
+  const Lanes all = isochoric ? (n[0] + n[1] + n[2]) * (1.0 / 9) : Lanes{};
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3, pair = 2 + j + k;
     r.d[i] += u.J * g[i];
     if (want != Want::hessian) continue;
     const Lanes jk = inverse[j] * inverse[k];
     Lanes own = n[i] - t[i], mixed = {};
-    if (law.isochoric) own += all - n[i] * (2.0 / 3), mixed = all - (n[j] + n[k]) * (1.0 / 3);
+    if (isochoric) own += all - n[i] * (2.0 / 3), mixed = all - (n[j] + n[k]) * (1.0 / 3);
     r.second.scaling[i] = own * inverse[i] * inverse[i] + u.J_J * g[i] * g[i];
     r.second.scaling[pair] = mixed * jk + u.J_J * g[j] * g[k] + u.J * s[i];
     r.second.twist[i] = (m[j] * inverse[j] + m[k] * inverse[k]) / (s[j] + s[k]) + q * jk + u.J * s[i];
     r.second.flip[i] += -q * jk - u.J * s[i];
   }
-  const LaneMask none = (s[2] <= kLeastStretch) | ~(magnitude(r.psi) <= std::numeric_limits<double>::max());
-  if (!any(none)) return r;
-  r.psi = none ? broadcast(std::numeric_limits<double>::infinity()) : r.psi;
-  for (int i = 0; i < 3; ++i) {
-    for (Lanes* v :
-         {&r.d[i], &r.second.twist[i], &r.second.flip[i], &r.second.scaling[i], &r.second.scaling[3 + i]}) {
-      *v = none ? Lanes{} : *v;
-    }
-  }
+  keep_domain(s[2], r);
   return r;
 }
-
-class OgdenMaterial final : public Material {
- public:
-  OgdenMaterial(std::string_view name, OgdenLaw law) : name_(name), law_(std::move(law)) {}
-  std::string_view name() const override { return name_; }
-  void describe(Fingerprint& f) const override { f.add(name_, law_); }
-
-  void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
-    Lanes F[9];
-    for (int i = 0; i < 9; ++i) F[i] = load(points.F[i]);
-    Svd3 svd;
-    svd3(F, svd);
-    const StretchLanes e = respond(law_, want, svd.sigma);
-    store(e.psi, r.psi);
-    if (want == Want::value) return;
-    for (int i = 0; i < 3; ++i) {
-      const Lanes u[3] = {svd.U[3 * i] * e.d[0], svd.U[3 * i + 1] * e.d[1], svd.U[3 * i + 2] * e.d[2]};
-      for (int j = 0; j < 3; ++j) {
-        store(u[0] * svd.V[3 * j] + u[1] * svd.V[3 * j + 1] + u[2] * svd.V[3 * j + 2], r.P[3 * i + j]);
-      }
-    }
-    if (want == Want::gradient) return;
-    Lanes A[45];
-    assemble(svd, e.second, A);
-    for (int i = 0; i < 45; ++i) store(A[i], r.A[i]);
-  }
-  void spectrum(const PointBatch&, const Svd3& svd, Spectrum& out) const override {
-    out = respond(law_, Want::hessian, svd.sigma).second;
-  }
-
- private:
-  std::string_view name_;
-  OgdenLaw law_;
-};
 
 Result<MaterialPtr> make(std::string_view name, const OgdenConstants& c, bool isochoric) {
   if (c.terms.empty())
@@ -148,7 +99,7 @@ Result<MaterialPtr> make(std::string_view name, const OgdenConstants& c, bool is
   if (!small) return small.failure();
   const double inverse = small.value().inverse_kappa;
   const auto energy = [&](double kappa) -> std::shared_ptr<const Material> {
-    return std::make_shared<OgdenMaterial>(
+    return std::make_shared<StretchLanesMaterial<OgdenLaw>>(
         name, OgdenLaw{c.terms, isochoric, {c.volume.energy, kappa, isochoric ? 0 : sum}});
   };
   EnergyModel m{name, small.value().elastic, inverse, energy(0), nullptr, false};

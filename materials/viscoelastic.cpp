@@ -8,6 +8,7 @@
 #include "engine/base/text.h"
 #include "engine/elements/material_model.h"
 #include "engine/math/lane_functions.h"
+#include "materials/stretch_lanes.h"
 
 namespace isochor {
 
@@ -17,16 +18,12 @@ namespace {
 // volume part). No value where an element is inverted.
 struct LogarithmicSpring {
   double mu = 0;
+  StretchLanes respond(Want want, const Lanes s[3]) const;
 };
 
-struct SpringLanes {
-  Lanes psi{}, d[3]{};
-  Spectrum second{};
-};
-
-SpringLanes respond(const LogarithmicSpring& spring, Want want, const Lanes s[3]) {
-  const double mu2 = 2 * spring.mu;
-  SpringLanes r;
+StretchLanes LogarithmicSpring::respond(Want want, const Lanes s[3]) const {
+  const double mu2 = 2 * mu;
+  StretchLanes r;
   Lanes e[3], inverse[3], mean{};
   for (int i = 0; i < 3; ++i) {
     e[i] = log(s[i]);
@@ -35,7 +32,7 @@ SpringLanes respond(const LogarithmicSpring& spring, Want want, const Lanes s[3]
   }
   for (int i = 0; i < 3; ++i) {
     e[i] -= mean;
-    r.psi += spring.mu * e[i] * e[i];
+    r.psi += mu * e[i] * e[i];
     r.d[i] = mu2 * e[i] * inverse[i];
   }
   for (int i = 0; i < 3 && want == Want::hessian; ++i) {
@@ -48,51 +45,9 @@ SpringLanes respond(const LogarithmicSpring& spring, Want want, const Lanes s[3]
     r.second.twist[i] = (r.d[j] + r.d[k]) / (s[j] + s[k]);
     r.second.flip[i] = mu2 * (slope - e[k]) * jk;
   }
-  constexpr double least_stretch = 1e-30;  // powers of smaller ones leave the range of numbers
-  const LaneMask none = (s[2] <= least_stretch) | ~(magnitude(r.psi) <= std::numeric_limits<double>::max());
-  if (!any(none)) return r;
-  r.psi = none ? broadcast(std::numeric_limits<double>::infinity()) : r.psi;
-  for (int i = 0; i < 3; ++i) {
-    for (Lanes* v :
-         {&r.d[i], &r.second.twist[i], &r.second.flip[i], &r.second.scaling[i], &r.second.scaling[3 + i]}) {
-      *v = none ? Lanes{} : *v;
-    }
-  }
+  keep_domain(s[2], r);
   return r;
 }
-
-class SpringMaterial final : public Material {
- public:
-  explicit SpringMaterial(LogarithmicSpring spring) : spring_(spring) {}
-  std::string_view name() const override { return "logarithmic spring"; }
-  void describe(Fingerprint& f) const override { f.add(name(), spring_); }
-
-  void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
-    Lanes F[9];
-    for (int i = 0; i < 9; ++i) F[i] = load(points.F[i]);
-    Svd3 svd;
-    svd3(F, svd);
-    const SpringLanes e = respond(spring_, want, svd.sigma);
-    store(e.psi, r.psi);
-    if (want == Want::value) return;
-    for (int i = 0; i < 3; ++i) {
-      const Lanes u[3] = {svd.U[3 * i] * e.d[0], svd.U[3 * i + 1] * e.d[1], svd.U[3 * i + 2] * e.d[2]};
-      for (int j = 0; j < 3; ++j) {
-        store(u[0] * svd.V[3 * j] + u[1] * svd.V[3 * j + 1] + u[2] * svd.V[3 * j + 2], r.P[3 * i + j]);
-      }
-    }
-    if (want == Want::gradient) return;
-    Lanes A[45];
-    assemble(svd, e.second, A);
-    for (int i = 0; i < 45; ++i) store(A[i], r.A[i]);
-  }
-  void spectrum(const PointBatch&, const Svd3& svd, Spectrum& out) const override {
-    out = respond(spring_, Want::hessian, svd.sigma).second;
-  }
-
- private:
-  LogarithmicSpring spring_;
-};
 
 // `all` less a share of `part`, which may be the same.
 class RemainderMaterial final : public Material {
@@ -145,7 +100,8 @@ class PronyModel final : public MaterialModel {
     for (const PronyTerm& term : terms) {
       share_ += term.ratio;
       memory_.branches.push_back(
-          {std::make_shared<SpringMaterial>(LogarithmicSpring{term.ratio * base_->shear_modulus()}),
+          {std::make_shared<StretchLanesMaterial<LogarithmicSpring>>(
+               "logarithmic spring", LogarithmicSpring{term.ratio * base_->shear_modulus()}),
            term.time});
     }
   }
