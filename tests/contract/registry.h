@@ -30,6 +30,8 @@ struct MaterialCase {
   bool isotropic = true;    // does not see rotations of the material
 };
 std::vector<MaterialCase> material_cases();
+// Of the material cases: what is added to a material (registry_additions.cpp).
+void add_material_additions(std::vector<MaterialCase>& out);
 
 // Materials by their public functions, for what they promise at small strain.
 struct ModelCase {
