@@ -1,0 +1,18 @@
+# Templates of Eigen are compiled for this processor here and for any in Ceres: programs hold nothing of Ceres, whose
+# templates the linker would merge with theirs, and show shared libraries none of their own.
+cmake_policy(VERSION 3.25)
+foreach(program ${PROGRAMS})
+  execute_process(COMMAND ${NM} --defined-only ${program} OUTPUT_VARIABLE all RESULT_VARIABLE status)
+  execute_process(COMMAND ${NM} -D --defined-only ${program} OUTPUT_VARIABLE shown RESULT_VARIABLE status_of_shown)
+  if(NOT status EQUAL 0 OR NOT status_of_shown EQUAL 0)
+    message(FATAL_ERROR "nm ${program} failed")
+  endif()
+  string(REGEX MATCH "[^\n]* _ZN5ceres5Solve[^\n]*" inside "${all}")
+  if(inside)
+    message(FATAL_ERROR "${program} holds Ceres itself: ${inside}")
+  endif()
+  string(REGEX MATCH "[^\n ]*5Eigen[^\n]*" exported "${shown}")
+  if(exported)
+    message(FATAL_ERROR "${program} shows ${exported}")
+  endif()
+endforeach()
