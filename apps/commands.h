@@ -87,6 +87,9 @@ struct LiveArguments {
 // False where no browser could be started.
 bool open_in_browser(const std::string& address);
 
+// Says what is wrong with the arguments; bad_input.
+int refuse(const std::string& what);
+
 int run(const RunArguments& arguments);
 int live(const LiveArguments& arguments);
 int view(const ViewArguments& arguments);

@@ -1,13 +1,10 @@
 // drive: amounts that bring probes to targets.
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 
 #include "apps/commands.h"
+#include "apps/stop.h"
 #include "apps/table.h"
 #include "scenes/outputs.h"
 #include "scenes/run.h"
@@ -16,17 +13,6 @@
 namespace isochor::app {
 
 namespace {
-
-std::atomic<int> g_signals{0};
-
-void on_signal(int) {
-  if (g_signals.fetch_add(1) > 0) _exit(interrupted);
-}
-
-int refuse(const std::string& what) {
-  std::fprintf(stderr, "isochor: %s\n", what.c_str());
-  return bad_input;
-}
 
 // The usual outputs are those of a run of the scene with the amounts that were found.
 Result<void> write(const DriveArguments& a, const std::string& folder, const SceneDef& scene,
@@ -38,7 +24,7 @@ Result<void> write(const DriveArguments& a, const std::string& folder, const Sce
     RunOptions options;
     options.folder = folder;
     options.threads = a.threads;
-    options.stop = [] { return g_signals > 0; };
+    options.stop = stop_wanted;
     const RunResult run = run_scene(driven.value(), options);
     if (run.status == RunStatus::not_written) return Error{run.reason};
     if (run.status != RunStatus::converged)
@@ -72,12 +58,11 @@ int drive_scene(const DriveArguments& a) {
     if (!actuator) return refuse(actuator.error());
     actuators.push_back(std::move(actuator).value());
   }
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  stop_on_signals();
   drive::DriveOptions options;
   options.tolerance = a.tolerance;
   options.threads = a.threads;
-  options.stop = [] { return g_signals > 0; };
+  options.stop = stop_wanted;
   const auto found = drive::drive(scene.value(), std::move(actuators), std::move(targets).value(), options);
   if (!found) return refuse(found.error());
   const std::string folder = a.folder.empty() ? "out/drive/" + scene.value().name : a.folder;
@@ -89,7 +74,7 @@ int drive_scene(const DriveArguments& a) {
     std::printf("%s", drive::drive_json(found.value()).c_str());
   else if (!a.quiet)
     print(found.value(), folder);
-  if (found.value().interrupted || g_signals > 0) return interrupted;
+  if (found.value().interrupted || stop_wanted()) return interrupted;
   if (!found.value().reason.empty()) std::fprintf(stderr, "isochor: %s\n", found.value().reason.c_str());
   return found.value().all_reached() ? success : not_converged;
 }

@@ -1,12 +1,9 @@
 // fit: constants of material laws from measured curves.
-#include <unistd.h>
-
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 
 #include "apps/commands.h"
+#include "apps/stop.h"
 #include "apps/table.h"
 #include "scenes/outputs.h"
 #include "studies/fit/report.h"
@@ -14,17 +11,6 @@
 namespace isochor::app {
 
 namespace {
-
-std::atomic<int> g_signals{0};
-
-void on_signal(int) {
-  if (g_signals.fetch_add(1) > 0) _exit(interrupted);
-}
-
-int refuse(const std::string& what) {
-  std::fprintf(stderr, "isochor: %s\n", what.c_str());
-  return bad_input;
-}
 
 Result<std::vector<const fit::Law*>> laws_of(const FitArguments& a) {
   std::vector<const fit::Law*> out;
@@ -86,14 +72,13 @@ int fit_laws(const FitArguments& a) {
   const auto laws = laws_of(a);
   if (!laws) return refuse(laws.error());
 
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  stop_on_signals();
   fit::FitOptions options;
   options.weights = a.relative ? fit::Weights::relative : fit::Weights::absolute;
-  options.stop = [] { return g_signals > 0; };
+  options.stop = stop_wanted;
   std::vector<fit::Fit> fits;
   for (const fit::Law* law : laws.value()) {
-    if (g_signals > 0) break;
+    if (stop_wanted()) break;
     if (!a.quiet && !a.json) std::fprintf(stderr, "\r%-32s", law->name.c_str());
     fits.push_back(fit::fit(*law, curves, options));
   }
@@ -109,7 +94,7 @@ int fit_laws(const FitArguments& a) {
     print(curves, fits);
     std::printf("%s/index.html\n", folder.c_str());
   }
-  if (g_signals > 0) return interrupted;
+  if (stop_wanted()) return interrupted;
   for (const fit::Fit& f : fits) {
     if (f.converged) return success;
   }

@@ -1,13 +1,10 @@
 // live: a scene that runs in the browser and answers to the hand.
-#include <unistd.h>
-
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <thread>
 
 #include "apps/commands.h"
+#include "apps/stop.h"
 #ifdef ISOCHOR_HAVE_HTTPLIB
 #include "live/server.h"
 #include "live_page.h"
@@ -27,13 +24,6 @@ int live(const LiveArguments&) {
 #else
 
 namespace {
-
-std::atomic<int> g_signals{0};
-
-// The first signal ends the session in good order, the second at once.
-void on_signal(int) {
-  if (g_signals.fetch_add(1) > 0) _exit(interrupted);
-}
 
 int refuse(Exit code, const std::string& sentence) {
   std::fprintf(stderr, "isochor: live: %s\n", sentence.c_str());
@@ -72,8 +62,7 @@ int live(const LiveArguments& a) {
   if (server_options.page.empty())
     return refuse(unavailable, "this build has no page (node and npm were missing when it was made)");
   if (a.dynamic) set_in_motion(scene.value().analysis);
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  stop_on_signals();
   live::SimulationOptions options;
   options.threads = a.threads;
   options.folder = a.folder.empty() ? "out/live_" + scene.value().name : a.folder;
@@ -90,7 +79,7 @@ int live(const LiveArguments& a) {
   auto server = live::Server::start(hub, server_options);
   if (!server) return refuse(no_port, server.error());
   greet(a, *server.value(), def);
-  while (g_signals.load() == 0 && !player.value()->over())
+  while (!stop_wanted() && !player.value()->over())
     std::this_thread::sleep_for(std::chrono::milliseconds(30));
   // The player first: viewers that wait for a picture are sent home by it.
   const auto recorded_in = player.value()->latest()->recorded_in;

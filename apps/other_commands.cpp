@@ -12,6 +12,11 @@
 
 namespace isochor::app {
 
+int refuse(const std::string& what) {
+  std::fprintf(stderr, "isochor: %s\n", what.c_str());
+  return bad_input;
+}
+
 namespace {
 
 using Json = nlohmann::ordered_json;

@@ -1,12 +1,10 @@
-#include <unistd.h>
-
-#include <atomic>
+// run and show: scenes of the library and of files.
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 
 #include "apps/commands.h"
+#include "apps/stop.h"
 #include "apps/table.h"
 #include "scenes/accuracy.h"
 #include "scenes/library.h"
@@ -17,14 +15,6 @@
 namespace isochor::app {
 
 namespace {
-
-std::atomic<int> g_signals{0};
-static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may touch it");
-
-// The first signal ends the run in good order, the second at once.
-void on_signal(int) {
-  if (g_signals.fetch_add(1) > 0) _exit(interrupted);
-}
 
 class Progress {
  public:
@@ -169,15 +159,14 @@ int run(const RunArguments& a) {
     return bad_input;
   }
   if (a.checkpoint) scene.value().outputs.checkpoint_seconds = *a.checkpoint;
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  stop_on_signals();
   const bool tables = !a.quiet && !a.json;
   RunOptions options;
   options.folder = a.folder.empty() ? "out/" + scene.value().name : a.folder;
   options.threads = a.threads;
   options.budget = a.budget;
   options.resume = a.resume;
-  options.stop = [] { return g_signals.load() > 0; };
+  options.stop = stop_wanted;
   options.log = [&](const std::string& text) {
     if (!a.quiet) std::fprintf(stderr, "isochor: note: %s\n", text.c_str());
   };

@@ -1,11 +1,8 @@
 // study: sweeps with their measurements.
-#include <unistd.h>
-
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 
 #include "apps/commands.h"
+#include "apps/stop.h"
 #include "apps/table.h"
 #include "scenes/outputs.h"
 #include "studies/check.h"
@@ -14,13 +11,6 @@
 namespace isochor::app {
 
 namespace {
-
-std::atomic<int> g_signals{0};
-
-// The first signal ends the study in good order, the second at once.
-void on_signal(int) {
-  if (g_signals.fetch_add(1) > 0) _exit(interrupted);
-}
 
 void print_cell(const studies::CellProgress& p) {
   const std::string place = std::to_string(p.done) + "/" + std::to_string(p.total);
@@ -58,7 +48,7 @@ int check_all(bool update, bool quiet) {
     return bad_input;
   }
   studies::CheckOptions options;
-  options.stop = [] { return g_signals.load() > 0; };
+  options.stop = stop_wanted;
   options.on_cell = [&](const std::string& id, const std::vector<std::string>& findings) {
     if (findings.empty() && quiet) return;
     std::printf("%-5s %s\n", findings.empty() ? "ok" : "WRONG", id.c_str());
@@ -82,10 +72,9 @@ int check_all(bool update, bool quiet) {
 
 int study(const StudyArguments& a) {
   if (a.list) return list_studies();
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  stop_on_signals();
   if (a.check) return check_all(a.update, a.quiet);
-  if (a.study == "chaos") return chaos(a, [] { return g_signals.load() > 0; });
+  if (a.study == "chaos") return chaos(a, stop_wanted);
   if (a.study.empty()) {
     std::fprintf(stderr, "isochor: study: name one, or ask for --list\n");
     return bad_input;
@@ -101,7 +90,7 @@ int study(const StudyArguments& a) {
   options.fresh = a.fresh;
   options.only = a.only;
   options.threads = a.threads;
-  options.stop = [] { return g_signals.load() > 0; };
+  options.stop = stop_wanted;
   if (!a.quiet) options.on_cell = print_cell;
   const studies::StudyResult result = studies::run_study(*found.value(), options);
   if (result.status == studies::StudyStatus::failed) {
