@@ -107,15 +107,17 @@ bool frame_due(const SceneDef& scene, int step) {
   return scene.outputs.every > 0 && step % scene.outputs.every == 0;
 }
 
-// Files of a folder for which `of` holds, and what a killed run left of files that were to replace others.
+// Files of a folder for which `of` holds, and what a killed run left of files that were to replace others;
+// or that alone.
+enum class Remove : std::uint8_t { all, what_was_left };
 template <class Of>
-void remove_files(const fs::path& folder, Of of) {
+void remove_files(const fs::path& folder, Of of, Remove which = Remove::all) {
   std::error_code code;
   std::vector<fs::path> old;
   for (const auto& entry : fs::directory_iterator(folder, code)) {
     const std::string file = entry.path().filename().string();
-    if (of(file) || (file.ends_with(".tmp") && of(file.substr(0, file.rfind('.', file.size() - 5)))))
-      old.push_back(entry.path());
+    const bool left = file.ends_with(".tmp") && of(file.substr(0, file.rfind('.', file.size() - 5)));
+    if (left || (which == Remove::all && of(file))) old.push_back(entry.path());
   }
   for (const auto& path : old) fs::remove(path, code);
 }
@@ -128,21 +130,24 @@ void remove_frames(const fs::path& folder, const SceneDef& scene, int kept) {
     for (int step = 0; step <= kept; ++step) {
       if (frame_due(scene, step)) stay.insert(frame_file(series, step));
     }
-    remove_files(folder / "frames", [&](const std::string& file) {
-      return file.starts_with(series + "_") && file.ends_with(".vtu") && !stay.contains(file);
-    });
+    const auto frame = [&](const std::string& file) {
+      return file.starts_with(series + "_") && file.ends_with(".vtu");
+    };
+    remove_files(folder / "frames", frame, Remove::what_was_left);
+    remove_files(folder / "frames",
+                 [&](const std::string& file) { return frame(file) && !stay.contains(file); });
   }
 }
 
-void remove_old(const fs::path& folder, const SceneDef& scene) {
-  remove_files(folder, [&](const std::string& file) {
+void remove_outputs(const fs::path& folder, const SceneDef& scene, Remove which) {
+  const auto output = [&](const std::string& file) {
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
       if (file == series_name(scene, b) + ".pvd") return true;
     }
     return file == "summary.json" || file == "steps.csv" || file == "index.html" || file == kCheckpoint ||
            file == kPageJournal;
-  });
-  remove_frames(folder, scene, -1);
+  };
+  remove_files(folder, output, which);
 }
 
 }  // namespace
@@ -179,7 +184,8 @@ Result<RunOutputs> RunOutputs::open(const std::string& folder, const SceneDef& s
     }
   }
   fs::remove(frame_probe, code);
-  remove_old(folder, scene);
+  remove_outputs(folder, scene, Remove::all);
+  remove_frames(folder, scene, -1);
   return RunOutputs(folder, scene);
 }
 
@@ -197,6 +203,7 @@ Result<RunOutputs> RunOutputs::reopen(const std::string& folder, const RunView& 
   const SceneDef& scene = view.scene;
   RunOutputs outputs(folder, scene);
   remove_frames(folder, scene, checkpoint.step);
+  remove_outputs(folder, scene, Remove::what_was_left);
   remove_files(folder, [&](const std::string& file) { return file == "index.html"; });
   outputs.table_ = table_header(view.result);
   for (const StepRecord& record : checkpoint.records) {
