@@ -21,18 +21,12 @@
 #include <string>
 #include <vector>
 
+#include "must.h"
+
 namespace {
 
 using namespace isochor;
-
-template <class T>
-T must(Result<T> result) {
-  if (!result) {
-    std::fprintf(stderr, "%s\n", result.error().c_str());
-    std::exit(2);
-  }
-  return std::move(result).value();
-}
+using bench::must;
 
 double cpu_milliseconds() {
   timespec t{};

@@ -20,20 +20,13 @@
 #include <type_traits>
 #include <vector>
 
+#include "must.h"
 #include "options.h"
 
 namespace {
 
 using namespace isochor;
-
-template <class T>
-T must(Result<T> result) {
-  if (!result) {
-    std::fprintf(stderr, "%s\n", result.error().c_str());
-    std::exit(2);
-  }
-  if constexpr (!std::is_void_v<T>) return std::move(result).value();
-}
+using bench::must;
 
 struct Beam {
   World world;

@@ -19,20 +19,13 @@
 #include <string>
 #include <vector>
 
+#include "must.h"
 #include "options.h"
 
 namespace {
 
 using namespace isochor;
-
-template <class T>
-T must(Result<T> result) {
-  if (!result) {
-    std::fprintf(stderr, "%s\n", result.error().c_str());
-    std::exit(2);
-  }
-  return std::move(result).value();
-}
+using bench::must;
 
 struct Outcome {
   int cells = 0, unknowns = 0, newton = 0, linear = 0, shifted = 0, ok = 0;

@@ -15,25 +15,13 @@
 #include <string>
 #include <vector>
 
+#include "must.h"
 #include "options.h"
 
 namespace {
 
 using namespace isochor;
-
-template <class T>
-T must(Result<T> result) {
-  if (!result) {
-    std::fprintf(stderr, "%s\n", result.error().c_str());
-    std::exit(2);
-  }
-  return std::move(result).value();
-}
-void must(const Result<void>& result) {
-  if (result) return;
-  std::fprintf(stderr, "%s\n", result.error().c_str());
-  std::exit(2);
-}
+using bench::must;
 
 struct Finger {
   World world;

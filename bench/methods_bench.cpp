@@ -12,6 +12,7 @@
 #include "isochor/effects.h"
 #include "isochor/generate.h"
 #include "isochor/schemes.h"
+#include "must.h"
 #include "options.h"
 #include "scenes/library.h"
 #include "scenes/run.h"
@@ -19,6 +20,7 @@
 namespace {
 
 using namespace isochor;
+using bench::must;
 
 struct Way {
   const char* name;
@@ -33,15 +35,6 @@ constexpr Way kWays[] = {{"automatic", Method::automatic},
                          {"augmented_gradients", Method::augmented_gradients},
                          {"augmented_ascent", Method::augmented_ascent},
                          {"dual_ascent", Method::dual_ascent}};
-
-template <class T>
-T must(Result<T> result) {
-  if (!result) {
-    std::fprintf(stderr, "%s\n", result.error().c_str());
-    std::exit(2);
-  }
-  return std::move(result).value();
-}
 
 void print(const char* scene, const char* way, const StepReport& r, const WorldSize& size) {
   const double n = std::max(1, r.iterations);

@@ -22,9 +22,12 @@
 #include <string>
 #include <vector>
 
+#include "must.h"
+
 namespace {
 
 using namespace isochor;
+using bench::must;
 
 struct Case {
   const char* solver_name;
@@ -52,15 +55,6 @@ struct Cost {
   int factorizations = 0, corrections = 0;
   std::int64_t linear_iterations = 0;
 };
-
-template <class T>
-T must(Result<T> result) {
-  if (!result) {
-    std::fprintf(stderr, "%s\n", result.error().c_str());
-    std::exit(2);
-  }
-  return std::move(result).value();
-}
 
 double processor_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;

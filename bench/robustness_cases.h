@@ -15,24 +15,12 @@
 #include <string>
 #include <vector>
 
+#include "must.h"
+
 namespace robustness {
 
 using namespace isochor;
-
-template <class T>
-T must(Result<T> result) {
-  if (!result) {
-    std::fprintf(stderr, "%s\n", result.error().c_str());
-    std::exit(2);
-  }
-  return std::move(result).value();
-}
-
-inline void must(const Result<void>& result) {
-  if (result) return;
-  std::fprintf(stderr, "%s\n", result.error().c_str());
-  std::exit(2);
-}
+using bench::must;
 
 // A number in [0, 1) made by hand, so that every standard library draws the same.
 inline double draw(std::mt19937& random) {

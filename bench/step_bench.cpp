@@ -18,11 +18,13 @@
 #include <string>
 #include <vector>
 
+#include "must.h"
 #include "options.h"
 
 namespace {
 
 using namespace isochor;
+using bench::must;
 
 const char* name(Element e) {
   return e == Element::tet4 ? "tet4" : (e == Element::tet10 ? "tet10" : "tet4_edge_smoothed");
@@ -32,15 +34,6 @@ struct Built {
   World world;
   BodyId body;
 };
-
-template <class T>
-T must(Result<T> result) {
-  if (!result) {
-    std::fprintf(stderr, "%s\n", result.error().c_str());
-    std::exit(2);
-  }
-  return std::move(result).value();
-}
 
 Built build(Mesh mesh, Element element, WorldOptions options, const char* clamped) {
   World world = must(World::create(std::move(options)));

@@ -11,20 +11,13 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "must.h"
 #include "options.h"
 
 namespace {
 
 using namespace isochor;
-
-template <class T>
-T must(Result<T> result) {
-  if (!result) {
-    std::fprintf(stderr, "%s\n", result.error().c_str());
-    std::exit(2);
-  }
-  return std::move(result).value();
-}
+using bench::must;
 
 struct Case {
   const char* what;

@@ -16,20 +16,13 @@
 #include <ctime>
 #include <vector>
 
+#include "must.h"
 #include "options.h"
 
 namespace {
 
 using namespace isochor;
-
-template <class T>
-T must(Result<T> result) {
-  if (!result) {
-    std::fprintf(stderr, "%s\n", result.error().c_str());
-    std::exit(2);
-  }
-  return std::move(result).value();
-}
+using bench::must;
 
 struct Base {
   const char* what;
