@@ -1,6 +1,7 @@
 // Prony series: relaxation and creep in closed form, dissipation, memory as part of the state, refusals.
 #include "isochor/viscoelastic.h"
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <random>
 
@@ -362,17 +363,34 @@ TEST_CASE("forces and matrices are the slopes of an increment's potential, whate
     for (const Vec3& v : y) bend_size = std::max(bend_size, norm(v));
     for (std::size_t i = 0; i < x.size(); ++i)
       REQUIRE(norm((1 / (2 * e)) * (plus[i] - minus[i]) - y[i]) < 1e-6 * bend_size);
-    for (const Definiteness policy : {Definiteness::projected, Definiteness::absolute}) {
-      evaluate(Want::hessian, policy, x);
-      for (int k = 0; k < 20; ++k) {
-        const auto way = noise();
+    // Crushed, where springs that are not made definite are not.
+    const auto crushed = moved(
+        rest,
+        [&] {
+          std::vector<Vec3> way(rest.size());
+          for (std::size_t i = 0; i < way.size(); ++i) way[i] = {0, 0, -0.7 * rest[i].z};
+          return way;
+        }(),
+        1);
+    const auto lowest = [&](Definiteness policy) {
+      evaluate(Want::hessian, policy, crushed);
+      const auto n = static_cast<Eigen::Index>(3 * rest.size());
+      Eigen::MatrixXd K(n, n);
+      for (Eigen::Index c = 0; c < n; ++c) {
+        std::vector<Vec3> unit_way(rest.size());
+        unit_way[static_cast<std::size_t>(c / 3)][static_cast<int>(c % 3)] = 1;
         std::fill(y.begin(), y.end(), Vec3{});
-        assembly.hessian_times(way, y);
-        double bend = 0;
-        for (std::size_t i = 0; i < x.size(); ++i) bend += dot(way[i], y[i]);
-        CHECK(bend > 0);
+        assembly.hessian_times(unit_way, y);
+        for (Eigen::Index r = 0; r < n; ++r)
+          K(r, c) = y[static_cast<std::size_t>(r / 3)][static_cast<int>(r % 3)];
       }
-    }
+      const Eigen::VectorXd values =
+          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K, Eigen::EigenvaluesOnly).eigenvalues();
+      return values[0] / values[n - 1];
+    };
+    CHECK(lowest(Definiteness::exact) < -1e-3);
+    CHECK(lowest(Definiteness::projected) > -1e-9);
+    CHECK(lowest(Definiteness::absolute) > -1e-9);
   }
 }
 
@@ -428,13 +446,22 @@ TEST_CASE("fields of stiffness and fibers go around a series") {
     test::must_advance(bar.world, 0.4);
     CHECK(bar.force() == Approx(factor * plain.force()).epsilon(1e-8));
   }
+  // Fibers along the bar add what they pull with, and a penalty on changes of volume adds nothing: at all
+  // times.
   FiberFamily fibers;
   fibers.direction = {1, 0, 0};
   fibers.k1 = kMu;
-  const MaterialPtr with = value(with_fibers(relaxing(), {fibers}));
-  Bar reinforced(test::static_options(), {{0, 0}, {0.4, e}, {100, e}}, with);
-  test::must_advance(reinforced.world, 0.4);
-  CHECK(reinforced.force() > 1.1 * nominal(e, {0, 0}));
+  Bar reinforced(test::static_options(), {{0, 0}, {0.4, e}, {100, e}},
+                 value(with_fibers(relaxing(), {fibers})));
+  Bar penalized(test::static_options(), {{0, 0}, {0.4, e}, {100, e}},
+                value(with_compression_penalty(relaxing(), {25 * kMu, 9})));
+  Bar bare(test::static_options(), {{0, 0}, {0.4, e}, {100, e}}, relaxing());
+  const double E = std::expm1(2 * e), pull = 2 * kMu * E * std::exp(e);
+  for (int k = 0; k < 3; ++k) {
+    for (World* world : {&reinforced.world, &penalized.world, &bare.world}) test::must_advance(*world, 0.4);
+    CHECK(reinforced.force() - bare.force() == Approx(pull).epsilon(1e-7));
+    CHECK(penalized.force() == Approx(bare.force()).epsilon(1e-7));
+  }
 }
 
 TEST_CASE("compressible bodies relax in shape alone: a bar that cannot get thinner") {
@@ -478,6 +505,10 @@ TEST_CASE("series that mean nothing are refused") {
   CHECK(refused(base, {{0.6, 1}, {0.4, 2}}).find("sum to 1;") != std::string::npos);
   CHECK(refused(value(neo_hookean(c)), {{0.1, 1}}).find("isochoric_neo_hookean") != std::string::npos);
   CHECK(refused(value(with_prony_series(base, {{0.1, 1}})), {{0.1, 1}}).find("already") != std::string::npos);
+  const auto field = with_poisson_field(
+      [&](double nu) -> Result<MaterialPtr> { return relaxing(StaticTime::seconds, nu); }, {0.3, 0.4});
+  REQUIRE_FALSE(field);
+  CHECK(field.error().find("has a memory") != std::string::npos);
   CHECK(refused(value(with_stiffness_field(base, {1, 2})), {{0.1, 1}}).find("field") != std::string::npos);
 
   const auto compiled_with = [&](const SchemePtr& scheme) {
