@@ -76,6 +76,8 @@ class Search {
   }
 
   Result<void> find_effects(const SceneDef& scene, const BuiltScene& built);
+  // Millimeters for meters, say: no amount brings a probe that far.
+  Result<void> check_distances() const;
   void run();
 
  private:
@@ -120,6 +122,34 @@ class Search {
   int polished_ = 0;
   double weight_ = 0;  // its largest entry, by amounts over their sizes [m]
 };
+
+Result<void> Search::check_distances() const {
+  constexpr double farthest = 100;  // over the size of the bodies
+  Vec3 lower{HUGE_VAL, HUGE_VAL, HUGE_VAL}, upper = -1.0 * lower;
+  for (const BodyId body : world_.bodies()) {
+    for (const Vec3& X : world_.rest_positions(body)) {
+      for (int k = 0; k < 3; ++k) {
+        lower[k] = std::min(lower[k], X[k]);
+        upper[k] = std::max(upper[k], X[k]);
+      }
+    }
+  }
+  const Vec3 size = upper - lower;
+  const double length = std::sqrt(dot(size, size));
+  const Vector now = positions();
+  for (std::size_t step = 0; step < drive_.targets.time.size(); ++step) {
+    for (std::size_t g = 0; g < goals(); ++g) {
+      const double target = drive_.targets.value[step][g],
+                   away = std::abs(target - now[static_cast<Eigen::Index>(g)]);
+      if (away <= farthest * length) continue;
+      return Error{"drive: target " + drive_.targets.goals[g].name + " = " + number(target) +
+                   " at t = " + number(drive_.targets.time[step]) + " is " + number(away) +
+                   " m from where the probe begins, and the scene is " + number(length) +
+                   " m across; targets are positions in meters"};
+    }
+  }
+  return {};
+}
 
 Result<void> Search::find_effects(const SceneDef& scene, const BuiltScene& built) {
   const auto n = static_cast<Eigen::Index>(drive_.actuators.size());
@@ -179,7 +209,7 @@ Result<void> Search::differentiate() {
   }
   for (const EffectId e : effects_) query.parameters.push_back(Parameter::amount_of(e));
   auto gradients = world_.gradients(query);
-  if (!gradients) return Error{gradients.error()};
+  if (!gradients) return gradients.failure();
   jacobian_.resize(static_cast<Eigen::Index>(goals()), amounts());
   for (std::size_t g = 0; g < goals(); ++g) {
     for (Eigen::Index i = 0; i < amounts(); ++i)
@@ -377,12 +407,13 @@ Result<Drive> drive(const SceneDef& scene, std::vector<Actuator> actuators, Targ
         "\" is not statics with fixed loads; set analysis.type to \"static\" and leave path_step out"};
   }
   auto built = build(scene, {.threads = options.threads});
-  if (!built) return Error{built.error()};
+  if (!built) return built.failure();
   Drive out;
   out.actuators = std::move(actuators);
   out.targets = std::move(targets);
   Search search(out, scene, built.value(), options);
-  if (auto r = search.find_effects(scene, built.value()); !r) return Error{r.error()};
+  if (auto r = search.find_effects(scene, built.value()); !r) return r.failure();
+  if (auto r = search.check_distances(); !r) return r.failure();
   search.run();
   return out;
 }

@@ -6,21 +6,15 @@
 #include <sstream>
 
 #include "engine/base/text.h"
+#include "engine/mesh/words.h"
+#include "studies/table_row.h"
 
 namespace isochor::drive {
 
 namespace {
 
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::stringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, ',');) {
-    const auto first = cell.find_first_not_of(" \t\r");
-    const auto last = cell.find_last_not_of(" \t\r");
-    cells.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
-  }
-  return cells;
-}
+using mesh_files::quoted;
+using studies::cells_of;
 
 std::string probes_of(const SceneDef& scene) {
   std::string names;
@@ -32,22 +26,22 @@ Result<Goal> goal_of(const std::string& name, const SceneDef& scene, const std::
   const auto dot = name.rfind('.');
   const std::string axes = "xyz", component = dot == std::string::npos ? "" : name.substr(dot + 1);
   if (component.size() != 1 || axes.find(component) == std::string::npos) {
-    return Error{who + "column \"" + name +
-                 "\": columns are \"time\" and components of probes, such as \"tip.x\""};
+    return Error{who + "column " + quoted(name) +
+                 ": columns are \"time\" and components of probes, such as \"tip.x\""};
   }
   for (std::size_t p = 0; p < scene.probes.size(); ++p) {
     if (scene.probes[p].name == name.substr(0, dot))
       return Goal{name, p, static_cast<int>(axes.find(component))};
   }
-  return Error{who + "column \"" + name + "\": the scene has no probe \"" + name.substr(0, dot) +
-               "\"; it has " + probes_of(scene)};
+  return Error{who + "column " + quoted(name) + ": the scene has no probe " + quoted(name.substr(0, dot)) +
+               "; it has " + probes_of(scene)};
 }
 
 Result<double> number_in(const std::string& cell, const std::string& who) {
   double value = 0;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
-    return Error{who + "\"" + cell + "\" is no finite number; give one in every column"};
+    return Error{who + quoted(cell) + " is no finite number; give one in every column"};
   return value;
 }
 
@@ -56,14 +50,15 @@ Result<std::size_t> read_header(const std::vector<std::string>& header, const Sc
   std::size_t time = header.size();
   for (std::size_t c = 0; c < header.size(); ++c) {
     for (std::size_t k = 0; k < c; ++k) {
-      if (header[k] == header[c]) return Error{who + "column \"" + header[c] + "\" is there twice; keep one"};
+      if (header[k] == header[c])
+        return Error{who + "column " + quoted(header[c]) + " is there twice; keep one"};
     }
     if (header[c] == "time") {
       time = c;
       continue;
     }
     auto goal = goal_of(header[c], scene, who);
-    if (!goal) return Error{goal.error()};
+    if (!goal) return goal.failure();
     out.goals.push_back(std::move(goal).value());
   }
   if (time == header.size()) return Error{who + "there is no column \"time\"; add one"};
@@ -82,12 +77,12 @@ Result<Targets> parse_targets(const std::string& text, const std::string& source
   std::size_t time = 0, columns = 0;
   while (std::getline(lines, line)) {
     ++number_of_line;
-    const std::vector<std::string> cells = cells_of(line);
+    const auto cells = cells_of(number_of_line == 1 ? studies::without_mark(line) : line);
     if (cells.empty() || (cells.size() == 1 && cells[0].empty())) continue;
     const std::string who = source + ", line " + std::to_string(number_of_line) + ": ";
     if (columns == 0) {
       auto found = read_header(cells, scene, who, out);
-      if (!found) return Error{found.error()};
+      if (!found) return found.failure();
       time = found.value();
       columns = cells.size();
       continue;
@@ -99,7 +94,7 @@ Result<Targets> parse_targets(const std::string& text, const std::string& source
     std::vector<double> goals;
     for (std::size_t c = 0; c < columns; ++c) {
       auto value = number_in(cells[c], who);
-      if (!value) return Error{value.error()};
+      if (!value) return value.failure();
       if (c != time) {
         goals.push_back(value.value());
         continue;

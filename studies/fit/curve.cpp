@@ -8,26 +8,18 @@
 #include <fstream>
 #include <sstream>
 
+#include "studies/table_row.h"
+
 namespace isochor::fit {
 
 namespace {
 
+using studies::cells_of;
+using studies::trimmed;
+
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
-}
-
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r\"");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
-std::vector<std::string> cells_of(const std::string& line, char separator) {
-  std::vector<std::string> cells;
-  std::stringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, separator);) cells.push_back(trimmed(cell));
-  return cells;
 }
 
 bool has(const std::string& text, const char* part) {
@@ -191,7 +183,7 @@ Result<Curve> read_curve(const std::string& given, const CurveOptions& options) 
   std::size_t line_number = 0;
   for (std::string line; !columns && std::getline(in, line);) {
     ++line_number;
-    columns = header_in(line, options);
+    columns = header_in(studies::without_mark(line), options);
   }
   if (!columns) {
     return Error{path + ": no line names a column of strain (or stretch) and one of stress" +

@@ -196,6 +196,13 @@ TEST_CASE("curves are read as people write them") {
     if (!curve) FAIL(curve.error());
     return curve.value();
   };
+  // The mark of UTF-8 that spreadsheets begin with is no part of a name.
+  const Curve marked = read("isochor_m.csv", "\xEF\xBB\xBF\"x\",stress (kPa)\n0.1,1\n0.2,2\n0.3,3\n", [] {
+    CurveOptions o;
+    o.strain_column = "x";
+    return o;
+  }());
+  CHECK(marked.stretch == std::vector<double>{1.1, 1.2, 1.3});
   // A preamble, semicolons, true numbers beside engineering ones.
   const Curve database = read(
       "isochor_a.csv",

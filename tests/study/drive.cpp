@@ -178,13 +178,16 @@ TEST_CASE("what cannot be driven is refused with file, line and remedy", "[drive
   CHECK_THAT(bad("tip.x\n1\n"), Contains("no column \"time\""));
   CHECK_THAT(bad("time\n1\n"), Contains("no target"));
   CHECK_THAT(bad("time,tip.x\n"), Contains("no target"));
-  CHECK_THAT(bad("time,tip.w\n1,0\n"), Contains("t.csv, line 1: column \"tip.w\""));
-  CHECK_THAT(bad("time,nose.x\n1,0\n"), Contains("no probe \"nose\"; it has \"tip\""));
+  CHECK_THAT(bad("time,tip.w\n1,0\n"), Contains("t.csv, line 1: column 'tip.w'"));
+  CHECK_THAT(bad("time,nose.x\n1,0\n"), Contains("no probe 'nose'; it has \"tip\""));
   CHECK_THAT(bad("time,tip.x,tip.x\n1,0,0\n"), Contains("twice"));
-  CHECK_THAT(bad("time,tip.x\n1,nan\n"), Contains("line 2: \"nan\" is no finite number"));
+  CHECK_THAT(bad("time,tip.x\n1,nan\n"), Contains("line 2: 'nan' is no finite number"));
   CHECK_THAT(bad("time,tip.x\n1,0,3\n"), Contains("3 columns, the header has 2"));
   CHECK_THAT(bad("time,tip.x\n1,0\n1,0\n"), Contains("line 3: time 1 is not after 1"));
   CHECK_THAT(bad("time,tip.x\n0,0\n"), Contains("begins at 0"));
+  CHECK(value(parse_targets("\xEF\xBB\xBFtime,\"tip.x\"\r\n1,0\r\n", "t.csv", scene)).time.size() == 1);
+  const std::string zeros("time,ti\0p.x\n1,0\n", 17);
+  CHECK(bad(zeros).find('\0') == std::string::npos);
   CHECK_THAT(refusal(read_targets("/nowhere.csv", scene)), Contains("cannot be opened"));
   CHECK_THAT(refusal(parse_actuator("a=1")), Contains("LEAST:MOST"));
   CHECK_THAT(refusal(parse_actuator("a=2:1")), Contains("swap"));
@@ -196,6 +199,11 @@ TEST_CASE("what cannot be driven is refused with file, line and remedy", "[drive
   CHECK_THAT(refusal(drive::drive(scene, {{"d", 0, 1, 1}}, targets)),
              Contains("it has \"root\", \"a\", \"b\", \"c\""));
   CHECK_THAT(refusal(drive::drive(scene, {{"a", 0, 1, 1}}, targets)), Contains("begins at 2000"));
+  for (const char* far : {"300", "-1e300"}) {
+    const Targets millimeters =
+        value(parse_targets(std::string("time,tip.x\n1,") + far + "\n", "t.csv", scene));
+    CHECK_THAT(refusal(drive::drive(scene, {{"a", 0, 1e5, 1e5}}, millimeters)), Contains("in meters"));
+  }
   CHECK_THAT(refusal(drive::drive(scene, {{"a", 0, 1e4, 1}, {"a", 0, 1e4, 1}}, targets)), Contains("twice"));
   const SceneDef moving = arm({"analysis.type=dynamic"});
   CHECK_THAT(refusal(drive::drive(moving, {{"a", 0, 1e4, 1}}, targets)), Contains("statics"));
