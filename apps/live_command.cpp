@@ -8,6 +8,7 @@
 #ifdef ISOCHOR_HAVE_HTTPLIB
 #include "live/server.h"
 #include "live_page.h"
+#include "scenes/outputs.h"
 #endif
 
 namespace isochor::app {
@@ -68,6 +69,10 @@ int live(const LiveArguments& a) {
   options.folder = a.folder.empty() ? "out/live_" + scene.value().name : a.folder;
   options.step_limit = a.step_limit;
   const SceneDef def = scene.value();
+  // Told here: the first step is too late for whoever looks away then.
+  if (a.record) {
+    if (auto r = RunOutputs::open(options.folder, def); !r) return refuse(not_written, r.error());
+  }
   auto player = live::Player::start(def, options, !a.paused);
   if (!player) return refuse(bad_input, player.error());
   if (a.record) {

@@ -375,6 +375,7 @@ const tests = {
       [[...SMALL, '--host', '203.0.113.1'], 7, /no such address/],
       [[...SMALL, '--port', '70000'], 2, /port/],
       [[...SMALL, '--step-limit', '0'], 2, /step-limit/],
+      [[...SMALL, '--record', '--out', '/proc/nowhere'], 5, /output folder \/proc\/nowhere cannot be made/],
     ]) {
       const run = spawnSync(isochor, ['live', ...args, '--no-browser'], { encoding: 'utf8', timeout: 60000 });
       assert.equal(run.status, code, `${args.join(' ')}: ${run.stderr}`);
