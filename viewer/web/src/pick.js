@@ -8,11 +8,12 @@ export function pick(stage, event) {
   const caster = new THREE.Raycaster();
   stage.camera.updateMatrixWorld();
   caster.setFromCamera(at, stage.camera);
-  return nearest(stage.body.positions, stage.run.triangles, caster.ray, stage.body.shows.cut ? stage.body.uniforms.cut.value : null);
+  return nearest(stage.body.positions, stage.run.triangles, caster.ray, stage.body.shows.cut ? stage.body.uniforms.cut.value : null,
+    (t) => stage.body.looks[stage.run.trianglePart[t]] === 'shown');
 }
 
-/** Moeller and Trumbore; what a cut has taken away is not there. */
-function nearest(x, triangles, { origin, direction }, cut) {
+/** Moeller and Trumbore; what a cut has taken away is not there, nor what is hidden or looked through. */
+function nearest(x, triangles, { origin, direction }, cut, shown) {
   let best = null;
   const e1 = [0, 0, 0], e2 = [0, 0, 0], s = [0, 0, 0];
   const o = origin.toArray(), d = direction.toArray();
@@ -32,7 +33,7 @@ function nearest(x, triangles, { origin, direction }, cut) {
     const v = (d[0] * qx + d[1] * qy + d[2] * qz) / det;
     if (!(v >= 0 && u + v <= 1)) continue;
     const far = (e2[0] * qx + e2[1] * qy + e2[2] * qz) / det;
-    if (!(far > 0) || (best && far >= best.distance)) continue;
+    if (!(far > 0) || (best && far >= best.distance) || !shown(t / 3)) continue;
     const point = o.map((p, k) => p + far * d[k]);
     if (cut && cut.x * point[0] + cut.y * point[1] + cut.z * point[2] + cut.w > 0) continue;
     best = { triangle: t / 3, weights: [1 - u - v, u, v], point, distance: far };
