@@ -54,7 +54,8 @@ Triangles round_shape(double radius, double straight) {
   Triangles t;
   Index last = -1;
   for (int half = 0; half < 2; ++half) {
-    for (int k = 0; k <= kAlong / 2; ++k) {
+    // Halves without a straight part share their ring.
+    for (int k = half == 1 && straight == 0 ? 1 : 0; k <= kAlong / 2; ++k) {
       const double angle = 0.5 * std::numbers::pi * (half == 0 ? 2.0 * k / kAlong - 1 : 2.0 * k / kAlong);
       const double shift = (half == 0 ? -0.5 : 0.5) * straight;
       const Index ring = t.ring(radius * std::cos(angle), shift + radius * std::sin(angle));

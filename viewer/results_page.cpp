@@ -402,8 +402,10 @@ Result<void> ResultsRecorder::append(const PageFrame& frame) {
     json.value(field.low);
     json.value(field.high);
     json.count(field.invalid);
-    json.value(field.usual_low);
-    json.value(field.usual_high);
+    for (const page::FieldRange& range : {field.usual, field.middle}) {
+      json.value(range.low);
+      json.value(range.high);
+    }
     json.end(']');
   }
   json.end(']');

@@ -5,6 +5,7 @@ import { el } from './dom.js';
 import { drawLegend } from './legend.js';
 import { significant, unitScale } from './numbers.js';
 import { canvasFor, paintPicture, saveAs } from './picture.js';
+import { pick } from './pick.js';
 import { Video } from './video.js';
 
 /** Who extends it has `state`, `page` and, where the browser can draw, `stage`. */
@@ -162,6 +163,9 @@ export class Display {
     const text = `${significant(place * scale.factor, 3)} ${scale.unit}`;
     return cut.axis === 'free' ? text : `${cut.axis} = ${text}`;
   }
+
+  /** What is under a point of the window, if anything. */
+  pickAt(event) { return this.stage ? pick(this.stage, event) : null; }
 
   /** The picture as a file. */
   savePicture(name) {

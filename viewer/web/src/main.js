@@ -2,6 +2,7 @@
 import 'uplot/dist/uPlot.min.css';
 import './style.css';
 import { Controls } from './controls.js';
+import { CursorValue } from './cursor_value.js';
 import { RunData } from './data.js';
 import { Display } from './display.js';
 import { el } from './dom.js';
@@ -65,6 +66,7 @@ class Viewer extends Display {
     }
     this.page.notes.append(...this.notes.map((text) => el('p', {}, text)));
     if (!options.shot) {
+      if (this.stage) this.cursor = new CursorValue(this);
       this.plots = new Plots(run, this.page.plots, (x) => this.go(nearestFrame(x, run.head.frames)));
       this.controls = new Controls(this);
       const dark = window.matchMedia('(prefers-color-scheme: dark)');
@@ -130,6 +132,7 @@ class Viewer extends Display {
       this.plots?.setTime(info.time, state.playing);
     }
     this.controls?.frameShown();
+    this.cursor?.later();
   }
 
   get pictureName() { return `${this.run.head.title || 'isochor'} ${this.state.frame}`.replace(/[^\w.-]+/g, '_'); }

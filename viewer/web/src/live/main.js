@@ -8,7 +8,6 @@ import { el } from '../dom.js';
 import { buildPage } from '../layout.js';
 import { significant } from '../numbers.js';
 import { looksOf } from '../options.js';
-import { pick } from '../pick.js';
 import { Stage } from '../stage.js';
 import { Connection } from './connection.js';
 import { LiveControls } from './controls.js';
@@ -181,7 +180,7 @@ class LiveViewer extends Display {
 
   /** What soft body is under a point of the window, if any. */
   pickAt(event) {
-    const hit = this.stage ? pick(this.stage, event) : null;
+    const hit = super.pickAt(event);
     return hit && !this.run.head.parts[this.run.trianglePart[hit.triangle]].obstacle ? hit : null;
   }
 
