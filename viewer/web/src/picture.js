@@ -3,15 +3,22 @@ import { gradient } from './colors.js';
 
 const style = (node) => getComputedStyle(node);
 
-/** The text of an element where the page has it. */
-function write(ink, node, from, scale) {
-  const box = node.getBoundingClientRect();
-  if (box.width === 0 || !node.textContent) return;
-  const { font, color } = style(node);
-  ink.font = font;
+/** Makes ready to write as the element does. */
+function pen(ink, node) {
+  const { fontStyle, fontWeight, fontSize, fontFamily, color } = style(node);
+  ink.font = `${fontStyle} ${fontWeight} ${fontSize} ${fontFamily}`;
   ink.fillStyle = color;
   ink.textBaseline = 'middle';
-  ink.fillText(node.textContent, box.left - from.left, box.top - from.top + box.height / 2);
+}
+
+/** A label with its ground, where the page has it. */
+function writeLabel(ink, node, from) {
+  const box = node.getBoundingClientRect();
+  const [x, y] = [box.left - from.left, box.top - from.top];
+  ink.fillStyle = style(node).backgroundColor;
+  ink.fillRect(x, y, box.width, box.height);
+  pen(ink, node);
+  ink.fillText(node.textContent, x + parseFloat(style(node).paddingLeft), y + box.height / 2);
 }
 
 /** Leaves of an element with their texts. */
@@ -23,14 +30,10 @@ function leaves(node) {
 }
 
 function writeLines(ink, host, from) {
-  if (!host || host.hidden) return;
   for (const text of leaves(host)) {
     const range = document.createRange();
     range.selectNodeContents(text);
-    const { font, color } = style(text.parentElement);
-    ink.font = font;
-    ink.fillStyle = color;
-    ink.textBaseline = 'middle';
+    pen(ink, text.parentElement);
     // Lines as the browser has broken them: rectangles that lie at the same height are one.
     const words = text.textContent.split(/(?<=\s)/);
     let at = 0, line = '', box = null;
@@ -54,15 +57,49 @@ function drawBars(ink, legend, from, field) {
     const box = bar.getBoundingClientRect();
     const ramp = ink.createLinearGradient(0, box.bottom - from.top, 0, box.top - from.top);
     const stops = gradient(field.diverging ? 'diverging' : 'sequential', 'to top').match(/rgb\([^)]*\)/g);
-    stops.forEach((color, i) => ramp.addColorStop(i / (stops.length - 1), color.replace(/rgb\((\d+) (\d+) (\d+)\)/, 'rgb($1,$2,$3)')));
+    stops.forEach((color, i) => ramp.addColorStop(i / (stops.length - 1), color));
     ink.fillStyle = ramp;
     ink.fillRect(box.left - from.left, box.top - from.top, box.width, box.height);
   }
-  for (const swatch of legend.querySelectorAll('.swatches i')) {
+}
+
+/** Swatches beside names. */
+function drawSwatches(ink, host, from) {
+  for (const swatch of host.querySelectorAll('i')) {
     const box = swatch.getBoundingClientRect();
     ink.fillStyle = style(swatch).backgroundColor;
     ink.fillRect(box.left - from.left, box.top - from.top, box.width, box.height);
   }
+}
+
+/** Springs and pins of the hand. */
+function drawHandles(ink, layer) {
+  const number = (node, name) => Number(node.getAttribute(name));
+  for (const node of layer.querySelectorAll('line, circle, text')) {
+    const { display, stroke, fill, strokeWidth, strokeDasharray } = style(node);
+    if (display === 'none') continue;
+    ink.strokeStyle = stroke;
+    ink.fillStyle = fill;
+    ink.lineWidth = parseFloat(strokeWidth);
+    ink.setLineDash(node.tagName === 'line' && strokeDasharray !== 'none' ? strokeDasharray.split(',').map(parseFloat) : []);
+    ink.beginPath();
+    if (node.tagName === 'line') {
+      ink.moveTo(number(node, 'x1'), number(node, 'y1'));
+      ink.lineTo(number(node, 'x2'), number(node, 'y2'));
+      ink.stroke();
+    } else if (node.tagName === 'circle') {
+      ink.arc(number(node, 'cx'), number(node, 'cy'), number(node, 'r'), 0, 2 * Math.PI);
+      ink.fill();
+      ink.stroke();
+    } else {
+      pen(ink, node);
+      ink.textBaseline = 'alphabetic';
+      ink.strokeText(node.textContent, number(node, 'x'), number(node, 'y'));
+      ink.fillStyle = fill;
+      ink.fillText(node.textContent, number(node, 'x'), number(node, 'y'));
+    }
+  }
+  ink.setLineDash([]);
 }
 
 /** Of a viewer as it was drawn last; in the same task as the drawing, after which the canvas is empty. */
@@ -81,9 +118,15 @@ export function paintPicture(viewer, copy) {
   ink.fillRect(0, 0, copy.width, copy.height);
   ink.drawImage(stage.canvas, 0, 0, copy.width, copy.height);
   ink.setTransform(scale, 0, 0, scale, 0, 0);
-  if (page.legend && !page.legend.hidden) drawBars(ink, page.legend, from, viewer.state.field);
-  for (const host of [page.stamp, page.legend, page.arrowKey]) writeLines(ink, host, from);
-  for (const label of stage.overlays.labels) if (!label.hidden) write(ink, label, from, scale);
+  if (!page.legend.hidden) drawBars(ink, page.legend, from, viewer.state.field);
+  for (const host of [page.stamp, page.legend, page.arrowKey]) {
+    if (host.hidden || style(host).display === 'none') continue;
+    drawSwatches(ink, host, from);
+    writeLines(ink, host, from);
+  }
+  const hand = stage.host.querySelector('svg.hand');
+  if (hand) drawHandles(ink, hand);
+  for (const label of stage.overlays.labels) if (!label.hidden && label.offsetWidth > 0) writeLabel(ink, label, from);
 }
 
 /** A canvas of the size of the picture, with even sides as films want them. */
