@@ -46,6 +46,7 @@ export class LiveControls extends DisplayPanel {
     if (viewer.stage) page.stage.append(this.tools.node);
     this.held = el('ul', { class: 'held' });
     this.heldGroup = group('Held', this.held);
+    this.heldGroup.hidden = true;
     page.dials.append(this.heldGroup);
     this.dials = new Dials(viewer, page.dials);
     page.controls.append(...this.groups([['run', 'So far'], ['frame', 'Now'], ['custom', 'Custom']]),

@@ -97,9 +97,13 @@ class LiveViewer extends Display {
   show(frame) {
     const first = this.frame === null;
     const { info } = frame;
+    if (this.isShown(frame)) {
+      this.frame.info = info;
+      this.showWords(info);
+      return;
+    }
     if (this.frame && info.step < this.frame.info.step) this.run.forgetRanges();
     this.frame = this.state.frame = frame;
-    this.drives = info.drives;
     const { state, stage, run } = this;
     const known = run.runRange(state.field) !== null;
     run.remember(frame, state.field);
@@ -107,18 +111,32 @@ class LiveViewer extends Display {
       stage.body.setShape(frame.positions);
       stage.overlays.setFrame(frame);
       this.hand.update(info.handles);
-      if (stage.playing !== info.playing) stage.setPlaying(info.playing);
+      const moves = info.playing && !info.settled && !info.failed;
+      if (stage.playing !== moves) stage.setPlaying(moves);
     }
     this.showField();
     this.showRangeSoon(known ? 400 : 0);
-    this.controls.update(frame);
     this.plots.add(info.time, info.measures);
-    this.tell(info);
+    this.showWords(info);
     if (first) this.open(frame);
     if (stage?.pending) stage.drawChange();
     this.hand?.place();
     this.cursor?.later();
+  }
+
+  /** What beside the picture changes: who drives, how fast it goes. */
+  showWords(info) {
+    this.drives = info.drives;
+    this.controls.update({ info });
+    this.tell(info);
     ++this.pictures;
+  }
+
+  /** The server answers after a while with the picture that is on the screen: there is nothing to draw. */
+  isShown(frame) {
+    const { frame: now } = this;
+    return now !== null && now.info.number === frame.info.number && now.field === frame.field
+      && now.forces.length === frame.forces.length && now.fibers.length === frame.fibers.length;
   }
 
   /** The numbers beside the colors follow them, but not faster than anybody reads, nor while somebody types. */
