@@ -23,8 +23,11 @@ const MOVING = [...SMALL, '--threads', '1', '--set', 'analysis.type=dynamic', '-
 
 /** A server that runs until it is told to end. */
 class Live {
+  static all = [];
+
   static async start(...args) {
     const live = new Live();
+    Live.all.push(live);
     live.child = spawn(isochor, ['live', ...args, '--no-browser'], { stdio: ['ignore', 'pipe', 'pipe'] });
     live.err = '';
     live.child.stderr.on('data', (data) => { live.err += data; });
@@ -537,7 +540,7 @@ try {
     console.log(`FAILED  the server ends with ${JSON.stringify(ended)}: ${shared.err}`);
   }
 } finally {
-  shared.child.kill('SIGKILL');
+  for (const { child } of Live.all) child.kill('SIGKILL'); // where a test has failed before its end
   await browser.close();
   rmSync(folder, { recursive: true, force: true });
 }
