@@ -282,7 +282,7 @@ std::size_t number_of(std::vector<std::string>& names, const std::string& name) 
 
 void RunOverlays::add_solid(const Obstacle& shape, const std::string& name, const std::string& rigid,
                             PageScene& scene) {
-  Shown solid{shape, rigid, {}};
+  Shown solid{shape, rigid, {}, {}};
   // A plane lies below the bodies, wherever its own origin is.
   Triangles t = triangles_of(shape, 0.75 * extent_);
   if (shape.shape == ObstacleShape::plane) {

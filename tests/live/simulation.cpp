@@ -132,10 +132,14 @@ TEST_CASE("a support is moved and turned by hand, little by little, and a reset 
     CHECK_FALSE(s->settled());
     CHECK(tip(*s, 2) < 0.4);
     for (int i = 0; i < 60; ++i) REQUIRE(s->advance() == StepEnd::done);
-    if (s->dynamic()) {
-      // What moves goes on swinging.
-      CHECK(tip(*s, 2) > 0.1);
-    } else {
+    // The face x = 0 is where it is wanted, whatever the rest of a block in motion does.
+    const PageScene& shape = s->shape();
+    const PageFrame lifted = s->picture(false).frame;
+    for (std::size_t v = 0; v < shape.rest.size(); ++v) {
+      const Vec3 d = lifted.positions[v] - shape.rest[v] - Vec3{0, 0, 0.5};
+      if (shape.rest[v].x == 0) CHECK(dot(d, d) < 1e-18);
+    }
+    if (!s->dynamic()) {
       CHECK(s->settled());
       CHECK(tip(*s, 2) == Approx(0.5).margin(1e-6));
       // About the middle of the face x = 0.
@@ -144,7 +148,6 @@ TEST_CASE("a support is moved and turned by hand, little by little, and a reset 
       CHECK(s->settled());
       CHECK(at("along z") == 0.5);
       const PageFrame turned = s->picture(false).frame;
-      const PageScene& shape = s->shape();
       for (std::size_t v = 0; v < shape.rest.size(); ++v) {
         const Vec3 r = shape.rest[v] - Vec3{0, 0.5, 0.5};
         const Vec3 d = turned.positions[v] - (Vec3{0, 0.5, 1} + Vec3{r.x, -r.z, r.y});

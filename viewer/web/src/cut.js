@@ -4,7 +4,8 @@
 export function directionOf(azimuth, elevation, up) {
   const a = (azimuth * Math.PI) / 180, e = (elevation * Math.PI) / 180;
   const level = [Math.cos(e) * Math.cos(a), Math.cos(e) * Math.sin(a)];
-  return up === 'y' ? [level[0], Math.sin(e), -level[1]] : [level[0], level[1], Math.sin(e)];
+  const n = up === 'y' ? [level[0], Math.sin(e), -level[1]] : [level[0], level[1], Math.sin(e)];
+  return n.map((v) => (Math.abs(v) < 1e-12 ? 0 : v)); // along an axis exactly
 }
 
 /** The angles of a direction. */
