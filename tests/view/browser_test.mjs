@@ -382,6 +382,7 @@ const tests = {
   async 'a cut may face any way'() {
     const page = await open('full', 'field=stress&frame=10&cut=+90/0:0.5');
     const free = await pixels(page);
+    assert.deepEqual(await page.evaluate('[isochorViewer.problems, isochorViewer.state.cut.axis]'), [[], 'free']);
     await page.evaluate(`isochorViewer.controls.setCut('y')`);
     await page.evaluate(`isochorViewer.state.cut.at = 0.5, isochorViewer.state.cut.flip = false, isochorViewer.controls.cutChanged()`);
     assert.equal((await pixels(page)).hash, free.hash, '90 degrees around is across y');

@@ -38,9 +38,12 @@ const OPTIONS = {
 
 const on = (text) => text === '1' || text === 'true';
 
+/** key=value&... of an address, in which a plus is a plus: it says which half of a cut stays. */
+export const asWritten = (text) => new URLSearchParams(text.replaceAll('+', '%2B'));
+
 /** The options, and under `problems` one sentence for each that is unknown or has a value it cannot have. */
 export function readOptions(location) {
-  const given = new URLSearchParams(`${location.search.slice(1)}&${location.hash.slice(1)}`);
+  const given = asWritten(`${location.search.slice(1)}&${location.hash.slice(1)}`);
   const problems = [];
   for (const [key, value] of [...given]) {
     if (!(key in OPTIONS)) problems.push(`There is no option "${key}"; there are ${Object.keys(OPTIONS).join(', ')}.`);

@@ -1,9 +1,9 @@
 // The address of a page that shows what it shows now. Behind #, which browsers send to nobody.
-import { readOptions } from './options.js';
+import { asWritten, readOptions } from './options.js';
 
 /** Options of a live page: those of results, and `token`. */
 export function readLink(location) {
-  const given = new URLSearchParams(location.hash.slice(1));
+  const given = asWritten(location.hash.slice(1));
   const token = given.get('token') ?? '';
   given.delete('token');
   return { ...readOptions({ search: location.search, hash: `#${given}` }), token };
