@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace isochor {
 
@@ -22,6 +23,7 @@ void InertiaCorrection::begin(Definiteness definiteness) {
   held_ = {};
   shift_ = 0;
   trace_ = 0;
+  first_ = true;
 }
 
 Kkt::Values InertiaCorrection::values(double shift) const {
@@ -81,6 +83,23 @@ bool InertiaCorrection::add_trace(SaddleReport& report) {
   return false;
 }
 
+// Where pressures of a new increment meet multipliers of the old state, the matrix may have a wrong inertia
+// although both increments end in stable equilibria. That of the old pressures is right, and as good for a
+// first step.
+bool InertiaCorrection::factor_where_it_began(const SaddleProblem& p, std::span<const Vec3> x,
+                                              std::span<const double> multipliers, SaddleReport& report) {
+  const auto before = p.prescribed_before;
+  if (std::equal(before.begin(), before.end(), p.prescribed.begin(), p.prescribed.end())) return false;
+  const auto evaluate = [&](std::span<const double> given) {
+    const Stopwatch watch(seconds_.evaluate);
+    evaluator_.assembly().evaluate(Want::hessian, definiteness_, x, multipliers, given);
+  };
+  evaluate(before);
+  if (factor_shifted(0, report)) return true;
+  if (!gave_up(report)) evaluate(p.prescribed);
+  return false;
+}
+
 bool InertiaCorrection::found_singular(SaddleReport& report) {
   report.status = SaddleStatus::singular;
   explain_singular(report);
@@ -92,9 +111,12 @@ bool InertiaCorrection::found_singular(SaddleReport& report) {
 bool InertiaCorrection::factor(const SaddleProblem& p, std::span<const Vec3> x,
                                std::span<const double> multipliers, SaddleReport& report) {
   mended_ = false;
+  const bool first = std::exchange(first_, false);
   if (factor_shifted(0, report)) return true;
   if (gave_up(report)) return false;
   mended_ = true;
+  if (first && !singular_ && factor_where_it_began(p, x, multipliers, report)) return true;
+  if (gave_up(report)) return false;
   if (evaluator_.system().has_bounds() && singular_ && add_trace(report)) return true;
   if (gave_up(report)) return false;
   if (climb(p, x, multipliers, report, {})) return true;

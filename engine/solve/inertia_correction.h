@@ -3,6 +3,7 @@
 // stiffness).
 //
 //   exact matrix
+//   of the first matrix of a solve: that of the given multipliers (pressures) with which the increment began
 //   rows with bounds and a singular matrix: a trace of compliance
 //   shifts of the displacement block, from a third of the last one that helped, times six
 //   projected Hessians of the stencils, and shifts on top, times thirty
@@ -56,6 +57,8 @@ class InertiaCorrection {
   void set_interrupt(std::function<bool()> asked) { interrupt_ = std::move(asked); }
 
  private:
+  bool factor_where_it_began(const SaddleProblem& p, std::span<const Vec3> x,
+                             std::span<const double> multipliers, SaddleReport& report);
   bool climb(const SaddleProblem& p, std::span<const Vec3> x, std::span<const double> multipliers,
              SaddleReport& report, const std::function<bool()>& works);
   bool factor_shifted(double shift, SaddleReport& report);
@@ -75,8 +78,9 @@ class InertiaCorrection {
   std::span<const std::uint8_t> held_;
   Definiteness definiteness_ = Definiteness::exact;
   bool mended_ = false, singular_ = false;
-  double trace_ = 0;  // of compliance in the matrix, where rows repeat each other
-  double shift_ = 0;  // the last one that mended the inertia in this solve
+  bool first_ = true;  // no matrix has been factored in this solve
+  double trace_ = 0;   // of compliance in the matrix, where rows repeat each other
+  double shift_ = 0;   // the last one that mended the inertia in this solve
 };
 
 }  // namespace isochor

@@ -37,9 +37,11 @@ struct SaddleProblem {
   std::span<const Vec3> force;         // dead loads [N]
   std::span<const double> target;      // compliant rows
   std::span<const double> prescribed;  // multipliers of prescribed rows
-  std::span<const Vec3> position;      // targets of given nodes, one for each System::free_bases() entry
-  std::span<const double> memory;      // System::memory() numbers: what pools keep between steps
-  StencilIncrement increment;          // its times, and where it began
+  // Those where the increment began; empty: not known. A matrix may be taken from there.
+  std::span<const double> prescribed_before;
+  std::span<const Vec3> position;  // targets of given nodes, one for each System::free_bases() entry
+  std::span<const double> memory;  // System::memory() numbers: what pools keep between steps
+  StencilIncrement increment;      // its times, and where it began
 };
 
 enum class SaddleStatus : std::uint8_t {

@@ -108,8 +108,9 @@ FactorReport ChosenSolver::factor(std::span<const double> values) {
   return report;
 }
 
-SolveReport ChosenSolver::solve(std::span<const double> right_hand_side, std::span<double> solution) {
-  SolveReport report = now_->solve(right_hand_side, solution);
+SolveReport ChosenSolver::solve_to(double tolerance, std::span<const double> right_hand_side,
+                                   std::span<double> solution) {
+  SolveReport report = now_->solve_to(tolerance, right_hand_side, solution);
   if (report.ok || now_ != iterative_.get() || !direct_fits_ || interrupted()) return report;
   // From here on, since what was hard once tends to stay so.
   iterative_failed_ = true;
@@ -117,7 +118,7 @@ SolveReport ChosenSolver::solve(std::span<const double> right_hand_side, std::sp
   const int iterations = report.iterations;
   if (use_direct("the iterative solver had failed", factored)) {
     factored = now_->factor(values_);
-    if (factored.status == FactorStatus::ok) report = now_->solve(right_hand_side, solution);
+    if (factored.status == FactorStatus::ok) report = now_->solve_to(tolerance, right_hand_side, solution);
     report.iterations += iterations;
   } else {
     now_ = iterative_.get();

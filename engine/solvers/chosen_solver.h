@@ -36,7 +36,11 @@ class ChosenSolver final : public LinearSolver {
 
   FactorReport analyze(const SymmetricPattern& pattern) override;
   FactorReport factor(std::span<const double> values) override;
-  SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) override;
+  SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) override {
+    return solve_to(0, right_hand_side, solution);
+  }
+  SolveReport solve_to(double tolerance, std::span<const double> right_hand_side,
+                       std::span<double> solution) override;
   bool precondition(std::span<double> x) override { return now_->precondition(x); }
 
  private:

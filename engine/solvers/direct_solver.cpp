@@ -54,7 +54,7 @@ FactorReport DirectSolver::analyze(const SymmetricPattern& pattern) {
 }
 
 FactorReport DirectSolver::factor(std::span<const double> values) {
-  factored_ = false;
+  factored_ = proven_ = false;
   FactorReport report;
   try {
     const std::size_t triangles = two_triangles_ ? 2 : 1;
@@ -86,14 +86,16 @@ FactorReport DirectSolver::factor(std::span<const double> values) {
   return report;
 }
 
-SolveReport DirectSolver::solve(std::span<const double> right_hand_side, std::span<double> solution) {
+SolveReport DirectSolver::solve_to(double tolerance, std::span<const double> right_hand_side,
+                                   std::span<double> solution) {
   SolveReport report;
   report.residual = std::numeric_limits<double>::infinity();
   const std::size_t n = pattern_ == nullptr ? 0 : at(pattern_->size);
   if (factored_ && right_hand_side.size() == n && solution.size() == n) {
     if (n == 0) return {true, 0, 0};
     try {
-      if (std::isfinite(max_norm(right_hand_side))) report = refine_as_needed(right_hand_side, solution);
+      if (std::isfinite(max_norm(right_hand_side)))
+        report = refine_as_needed(right_hand_side, solution, tolerance);
     } catch (const std::bad_alloc&) {
       throw;  // says nothing about the matrix
     } catch (...) {
@@ -114,12 +116,13 @@ bool DirectSolver::precondition(std::span<double> x) {
   }
 }
 
-SolveReport DirectSolver::refine_as_needed(std::span<const double> b, std::span<double> x) {
+SolveReport DirectSolver::refine_as_needed(std::span<const double> b, std::span<double> x, double tolerance) {
   bool inertia_changed = false;
-  SolveReport report = refine(b, x);
+  SolveReport report = refine(b, x, tolerance);
   while ((!report.ok || doubtful()) && strengthen(report)) {
     inertia_changed = inertia_changed || report.inertia_changed;
-    report = refine(b, x);
+    proven_ = false;
+    report = refine(b, x, tolerance);
   }
   report.inertia_changed = inertia_changed;
   // Solved, but not what was asked for: whoever asked believes in another inertia.
@@ -127,7 +130,7 @@ SolveReport DirectSolver::refine_as_needed(std::span<const double> b, std::span<
   return report;
 }
 
-SolveReport DirectSolver::refine(std::span<const double> b, std::span<double> x) {
+SolveReport DirectSolver::refine(std::span<const double> b, std::span<double> x, double tolerance) {
   SolveReport report;
   report.residual = std::numeric_limits<double>::infinity();
   residual_ratio_ = 0;
@@ -139,8 +142,13 @@ SolveReport DirectSolver::refine(std::span<const double> b, std::span<double> x)
     const double scale = norm_ * max_norm(y) + b_norm;
     return scale > 0 ? residual_norm_ / scale : residual_norm_;
   };
+  // Of new factors one refinement is asked for, whatever the tolerance: whether it contracts tells what they
+  // are worth.
+  const auto arrived = [&] {
+    return residual_norm_ <= tolerance * b_norm && (proven_ || report.refinements > 0);
+  };
   report.residual = relative(x);
-  while (report.residual > target_residual && report.refinements < max_refinements &&
+  while (report.residual > target_residual && !arrived() && report.refinements < max_refinements &&
          std::isfinite(report.residual)) {
     const double before = report.residual, norm_before = residual_norm_;
     std::copy(residual_.begin(), residual_.end(), correction_.begin());
@@ -158,7 +166,8 @@ SolveReport DirectSolver::refine(std::span<const double> b, std::span<double> x)
     report.residual = now;
     if (now > 0.5 * before) break;
   }
-  report.ok = report.residual <= acceptable_residual;
+  report.ok = report.residual <= acceptable_residual || arrived();
+  proven_ = proven_ || report.ok;
   return report;
 }
 

@@ -16,7 +16,11 @@ class DirectSolver : public LinearSolver {
 
   FactorReport analyze(const SymmetricPattern& pattern) final;
   FactorReport factor(std::span<const double> values) final;
-  SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) final;
+  SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) final {
+    return solve_to(0, right_hand_side, solution);
+  }
+  SolveReport solve_to(double tolerance, std::span<const double> right_hand_side,
+                       std::span<double> solution) final;
   bool precondition(std::span<double> x) final;
 
  protected:
@@ -34,8 +38,9 @@ class DirectSolver : public LinearSolver {
     return false;
   }
 
-  // The refined solution and how good it is. Also what a backend asks a doubtful factor with.
-  SolveReport refine(std::span<const double> b, std::span<double> x);
+  // The refined solution and how good it is; `tolerance` as of solve_to(), in the maximum norm. Also what a
+  // backend asks a doubtful factor with.
+  SolveReport refine(std::span<const double> b, std::span<double> x, double tolerance = 0);
 
   bool two_triangles() const { return two_triangles_; }
   const SymmetricPattern& pattern() const { return *pattern_; }
@@ -51,7 +56,7 @@ class DirectSolver : public LinearSolver {
   double target_residual = 2 * std::numeric_limits<double>::epsilon();
 
  private:
-  SolveReport refine_as_needed(std::span<const double> b, std::span<double> x);
+  SolveReport refine_as_needed(std::span<const double> b, std::span<double> x, double tolerance);
   // residual = b - A x; returns its infinity norm, NaN included.
   double compute_residual(std::span<const double> b, std::span<const double> x);
 
@@ -61,6 +66,7 @@ class DirectSolver : public LinearSolver {
   std::vector<double> residual_, correction_, best_;
   double norm_ = 0, residual_norm_ = 0, residual_ratio_ = 0;
   bool factored_ = false;
+  bool proven_ = false;  // a right-hand side was refined on these factors
 };
 
 }  // namespace isochor

@@ -96,6 +96,13 @@ class LinearSolver {
   // Solves with iterative refinement against the values last factored (which must still be alive and
   // unchanged).
   virtual SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) = 0;
+  // The same for a solution that need not be exact: until the residual is `tolerance` of the right-hand side,
+  // in the norm of the backend (0: as exact as solve()). What is not known to stop early does not.
+  virtual SolveReport solve_to(double tolerance, std::span<const double> right_hand_side,
+                               std::span<double> solution) {
+    (void)tolerance;
+    return solve(right_hand_side, solution);
+  }
   // x := M^-1 x, M what the factors last made are exactly those of: next to the matrix. False where there are
   // no factors.
   virtual bool precondition(std::span<double> x) {

@@ -138,22 +138,27 @@ void SaddleMatrix::set_values(std::span<const double> values, BlockMatrix& stiff
   }
 }
 
-void SaddleMatrix::multiply(const RowLoop& loop, const BlockMatrix& stiffness, std::span<const double> x,
-                            std::span<double> y) const {
-  const std::size_t displacements = 3 * at(nodes_);
-  isochor::multiply(loop, stiffness, x.first(displacements), y.first(displacements));
-  const double* const multiplier = x.data() + displacements;
+void SaddleMatrix::add_row_forces(const RowLoop& loop, double factor, std::span<const double> multipliers,
+                                  std::span<double> displacements) const {
   loop(nodes_, 512, [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) {
       double sum[3] = {};
       for (auto e = node_start_[at(i)]; e < node_start_[at(i) + 1]; ++e) {
-        const double l = multiplier[node_row_[static_cast<std::size_t>(e)]];
+        const double l = multipliers[at(node_row_[static_cast<std::size_t>(e)])];
         const double* const g = gradient_.data() + 3 * node_block_[static_cast<std::size_t>(e)];
         for (int q = 0; q < 3; ++q) sum[q] += g[q] * l;
       }
-      for (std::size_t q = 0; q < 3; ++q) y[3 * at(i) + q] += sum[q];
+      for (std::size_t q = 0; q < 3; ++q) displacements[3 * at(i) + q] += factor * sum[q];
     }
   });
+}
+
+void SaddleMatrix::multiply(const RowLoop& loop, const BlockMatrix& stiffness, std::span<const double> x,
+                            std::span<double> y) const {
+  const std::size_t displacements = 3 * at(nodes_);
+  isochor::multiply(loop, stiffness, x.first(displacements), y.first(displacements));
+  const auto multiplier = x.subspan(displacements);
+  add_row_forces(loop, 1, multiplier, y.first(displacements));
   loop(rows_, 256, [&](Index begin, Index end) {
     for (Index r = begin; r < end; ++r) {
       double sum = 0;
@@ -164,7 +169,7 @@ void SaddleMatrix::multiply(const RowLoop& loop, const BlockMatrix& stiffness, s
       }
       for (auto e = compliance_start_[at(r)]; e < compliance_start_[at(r) + 1]; ++e) {
         const auto place = static_cast<std::size_t>(e);
-        sum += compliance_[place] * multiplier[compliance_column_[place]];
+        sum += compliance_[place] * multiplier[at(compliance_column_[place])];
       }
       y[displacements + at(r)] = sum;
     }

@@ -28,6 +28,9 @@ class SaddleMatrix {
 
   void multiply(const RowLoop& loop, const BlockMatrix& stiffness, std::span<const double> x,
                 std::span<double> y) const;
+  // displacements += factor G^T multipliers.
+  void add_row_forces(const RowLoop& loop, double factor, std::span<const double> multipliers,
+                      std::span<double> displacements) const;
   double compliance_diagonal(Index row) const { return row_diagonal_[at(row)]; }
   Index row_nodes(Index row) const {
     return static_cast<Index>(row_start_[at(row) + 1] - row_start_[at(row)]);

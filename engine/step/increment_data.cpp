@@ -1,5 +1,7 @@
 #include "engine/step/increment_data.h"
 
+#include <algorithm>
+
 namespace isochor {
 
 IncrementData::IncrementData(const System& system, const Gravity& gravity, const State& state,
@@ -10,6 +12,7 @@ IncrementData::IncrementData(const System& system, const Gravity& gravity, const
       force_(at(system.nodes())),
       target_(at(system.rows())),
       prescribed_(at(system.prescribed_rows())),
+      prescribed_before_(prescribed_.size()),
       position_(system.free_bases().size()) {
   evaluate(system, state.t);
 }
@@ -33,11 +36,14 @@ void IncrementData::evaluate(const System& system, double t) {
 }
 
 SaddleProblem IncrementData::problem(const System& system, const State& state, double t) {
+  evaluate(system, state.t);
+  std::copy(prescribed_.begin(), prescribed_.end(), prescribed_before_.begin());
   evaluate(system, t);
   SaddleProblem problem;
   problem.force = force_;
   problem.target = target_;
   problem.prescribed = prescribed_;
+  problem.prescribed_before = prescribed_before_;
   problem.position = position_;
 
   problem.memory = std::span<const double>(state.extra).first(at(system.memory()));

@@ -14,7 +14,7 @@ class IncrementData {
   // looked at again and again: both outlive this.
   IncrementData(const System& system, const Gravity& gravity, const State& state, std::vector<double> weight);
 
-  // Fills the arrays for time t.
+  // Fills the arrays for time t, but those of where an increment begins.
   void evaluate(const System& system, double t);
   // The problem of an increment without inertia that begins at the state and ends at t; the arrays are those
   // of t then.
@@ -31,6 +31,7 @@ class IncrementData {
   std::vector<double> weight_;               // [kg]
   std::vector<Vec3> force_;                  // dead loads [N]
   std::vector<double> target_, prescribed_;  // of compliant rows; multipliers of prescribed ones
+  std::vector<double> prescribed_before_;    // the same where the increment begins
   std::vector<Vec3> position_;               // one for each System::free_bases() entry [m]
 };
 

@@ -1,5 +1,5 @@
 // The generalized minimal residual method on small dense systems.
-#include "engine/math/gmres.h"
+#include "engine/solvers/gmres.h"
 
 #include <Eigen/Dense>
 #include <cmath>
@@ -88,4 +88,37 @@ TEST_CASE("the method says when its room does not do, and stops at what asked fo
   b.setZero();
   CHECK(gmres.solve({b.data(), at(n)}, x, 1e-10, apply, nothing) == 0);
   CHECK(view(std::span<const double>(x)).norm() == 0);
+}
+
+TEST_CASE("directions that are made again lead where kept ones do, on one thread or several") {
+  constexpr Eigen::Index n = 9000;
+  // Tridiagonal and unsymmetric, by its diagonal; longer than a block of the sums.
+  const auto apply = [](std::span<const double> v, std::span<double> w) {
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      w[i] = (i % 3 == 0 ? -4 : 5) * v[i];
+      if (i > 0) w[i] += v[i - 1];
+      if (i + 1 < v.size()) w[i] -= 0.5 * v[i + 1];
+    }
+  };
+  const auto precondition = [](std::span<double> v) {
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] /= i % 3 == 0 ? -4 : 5;
+    return true;
+  };
+  std::vector<double> b(n), kept(n), again(n), threads(n), product(n);
+  for (std::size_t i = 0; i < b.size(); ++i) b[i] = std::sin(static_cast<double>(i * i % 97));
+  Gmres first(n, 40), second(n, 40, Gmres::Directions::made_again);
+  const int steps = first.solve(b, kept, 1e-10, apply, precondition);
+  REQUIRE(steps > 3);
+  REQUIRE(steps < 40);
+  CHECK(second.solve(b, again, 1e-10, apply, precondition) == steps);
+  CHECK((view(std::span<const double>(kept)) - view(std::span<const double>(again))).norm() <
+        1e-9 * view(std::span<const double>(kept)).norm());
+  apply(again, product);
+  CHECK((view(std::span<const double>(product)) - view(std::span<const double>(b))).norm() <
+        2e-10 * view(std::span<const double>(b)).norm());
+  const TbbParallel parallel(3);
+  Gmres third(n, 40, Gmres::Directions::made_again);
+  third.set_loop(RowLoop(&parallel));
+  third.solve(b, threads, 1e-10, apply, precondition);
+  CHECK(threads == again);
 }

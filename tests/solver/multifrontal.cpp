@@ -256,6 +256,30 @@ TEST_CASE("fronts have the same bits at any number of threads") {
   }
 }
 
+TEST_CASE("a solution that need not be exact is refined only until it is good enough") {
+  const Matrix m = test::saddle({400, 120, true, 1e-3, 0});
+  const std::vector<double> b = test::random_vector(m.pattern.size);
+  const auto solver = make_multifrontal_solver(pivoting(), {.single_from = 0});
+  REQUIRE(solver->analyze(m.pattern).status == FactorStatus::ok);
+  REQUIRE(solver->factor(m.values).status == FactorStatus::ok);
+  std::vector<double> x(b.size());
+  const Eigen::Map<const Eigen::VectorXd> right(b.data(), m.pattern.size);
+  const auto solve = [&](double tolerance) {
+    const SolveReport s = solver->solve_to(tolerance, b, x);
+    CHECK(s.ok);
+    const Eigen::Map<const Eigen::VectorXd> solution(x.data(), right.size());
+    const double left = (right - m.dense() * solution).lpNorm<Eigen::Infinity>();
+    CHECK(left <= std::max(tolerance, 1e-10) * right.lpNorm<Eigen::Infinity>());
+    return s.refinements;
+  };
+  // Whether the first refinement contracts is what the inertia is believed for.
+  CHECK(solve(1e-1) == 1);
+  const int exact = solve(0), rough = solve(1e-1), finer = solve(1e-8);
+  CHECK(rough == 0);
+  CHECK(exact >= finer);
+  CHECK(finer > rough);
+}
+
 // Whatever the precision: either factor() tells the inertia, or the solve takes it back.
 TEST_CASE("an eigenvalue next to zero is told by its sign") {
   const Matrix base = test::saddle({50, 15, false, 0.1, 0});

@@ -88,7 +88,7 @@ TEST_CASE("views stay where they are when a state that a budget left unfinished 
   const Views views{world, body};
   StepBudget one;
   one.iterations = 1;
-  value(world.set_amount(chamber, 500));
+  value(world.set_amount(chamber, 20e3));
   REQUIRE(world.step(1.0 / 60, one).status == StepStatus::unfinished);
   views.check();
   value(world.set_amount(chamber, 1e12));

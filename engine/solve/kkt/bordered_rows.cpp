@@ -97,8 +97,8 @@ void BorderedRows::reduce(std::span<const double> row_rhs) {
   for (std::size_t j = 0; j < rows.size(); ++j) rhs_[j] = row_rhs.empty() ? 0 : row_rhs[at(rows[j])];
 }
 
-bool BorderedRows::solve(StageSeconds& seconds) {
-  const bool ok = matrix_.solve(seconds);
+bool BorderedRows::solve(StageSeconds& seconds, double tolerance) {
+  const bool ok = matrix_.solve(seconds, tolerance);
   if (!schur_) return ok;
   const Stopwatch watch(seconds.solve);
   const auto& rows = system_.treated().bordered;

@@ -22,7 +22,8 @@ class BorderedRows {
   // Sets the right-hand sides of these rows aside; {}: zeros.
   void reduce(std::span<const double> row_rhs);
   // The matrix with its border, from FactoredMatrix::rhs() to its solution().
-  bool solve(StageSeconds& seconds);
+  // `tolerance` as LinearSolver::solve_to(), of the matrix's part; that of the border is exact.
+  bool solve(StageSeconds& seconds, double tolerance = 0);
   void recover(std::span<double> dlambda) const;
 
  private:

@@ -4,10 +4,10 @@
 // the matrix.
 #pragma once
 
-#include "engine/math/gmres.h"
 #include "engine/solve/kkt/condensed_rows.h"
 #include "engine/solve/kkt/factored_matrix.h"
 #include "engine/solve/kkt/scaled_unknowns.h"
+#include "engine/solvers/gmres.h"
 
 namespace isochor {
 

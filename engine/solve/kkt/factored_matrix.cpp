@@ -78,9 +78,9 @@ FactorOutcome FactoredMatrix::factor_by(Backend& backend, std::span<const double
   return {f.status, f.negative_pivots, f.message};
 }
 
-bool FactoredMatrix::solve(StageSeconds& seconds) {
+bool FactoredMatrix::solve(StageSeconds& seconds, double tolerance) {
   const Stopwatch watch(seconds.solve);
-  const SolveReport solved = factored_->solve(rhs_, solution_);
+  const SolveReport solved = factored_->solve_to(tolerance, rhs_, solution_);
   residual_ = std::max(residual_, solved.residual);
   counts_.iterations += solved.iterations;
   inertia_was_wrong_ = inertia_was_wrong_ || solved.inertia_changed;

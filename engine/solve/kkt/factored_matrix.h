@@ -33,7 +33,8 @@ class FactoredMatrix {
                                    std::span<const std::uint8_t> held, StageSeconds& seconds);
 
   void clear_residual() { residual_ = 0; }
-  bool solve(StageSeconds& seconds);
+  // `tolerance` as LinearSolver::solve_to().
+  bool solve(StageSeconds& seconds, double tolerance = 0);
   // The same for another vector, in the course of a factorization.
   bool solve_beside(std::span<const double> rhs, std::span<double> solution);
   // u := M^-1 u with the factors as they are; false where there are none.

@@ -77,9 +77,10 @@ void Kkt::recover(std::span<const double> row_rhs, std::span<Vec3> dx, std::span
 }
 
 bool Kkt::solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs, std::span<Vec3> dx,
-                std::span<double> dlambda, StageSeconds& seconds) {
+                std::span<double> dlambda, StageSeconds& seconds, double tolerance) {
   reduce(node_rhs, row_rhs);
-  const bool ok = system_->treated().dual.empty() ? bordered_.solve(seconds) : dual_.solve(row_rhs, seconds);
+  const bool ok =
+      system_->treated().dual.empty() ? bordered_.solve(seconds, tolerance) : dual_.solve(row_rhs, seconds);
   recover(row_rhs, dx, dlambda);
   return ok;
 }

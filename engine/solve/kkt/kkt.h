@@ -42,9 +42,10 @@ class Kkt {
   Outcome factor(const Assembly& assembly, const Values& values, StageSeconds& seconds);
 
   // Solves for the steps: node_rhs over all nodes (what falls on given directions is ignored), row_rhs over
-  // all compliant rows in the sign of [K, G^T; G, -C]. Returns false when the residual is not acceptable.
+  // all compliant rows in the sign of [K, G^T; G, -C]. `tolerance` as LinearSolver::solve_to(), but where
+  // rows are dual. Returns false when the residual is not acceptable.
   bool solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs, std::span<Vec3> dx,
-             std::span<double> dlambda, StageSeconds& seconds);
+             std::span<double> dlambda, StageSeconds& seconds, double tolerance = 0);
 
   // The same for a matrix next to the one last factored, whose factors precondition: with an unsymmetric part
   // added (null: none), and other rows held at a bound. Until the residual is `tolerance` of the

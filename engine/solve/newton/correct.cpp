@@ -9,13 +9,20 @@ namespace isochor {
 
 namespace {
 
-// Whether a correction was worth it, from the residuals before and after: with less of a reduction, a new
-// factorization is the better buy.
-bool pays(double force, double row, const SaddleReport& after, const SaddleOptions& options) {
-  constexpr double worthwhile = 0.3;
-  return after.force_residual <= std::max(worthwhile * force, options.force_tolerance) &&
-         after.row_residual <= std::max(worthwhile * row, options.row_tolerance);
-}
+// What is left of the residuals, or may be.
+struct Left {
+  double force, row;
+
+  explicit Left(const SaddleReport& report) : force(report.force_residual), row(report.row_residual) {}
+  Left(double part, const SaddleOptions& o) : force(part * o.force_tolerance), row(part * o.row_tolerance) {}
+  bool within(const Left& goal) const { return force <= goal.force && row <= goal.row; }
+  // Whether a correction was worth it: with less of a reduction on the way to a goal, a new factorization is
+  // the better buy.
+  bool pays(double worthwhile, const Left& before, const Left& goal) const {
+    return force <= std::max(worthwhile * before.force, goal.force) &&
+           row <= std::max(worthwhile * before.row, goal.row);
+  }
+};
 
 }  // namespace
 
@@ -28,6 +35,8 @@ bool Newton::close_enough(const SaddleReport& report) {
 // symmetric or not. True when the state is in balance. The last evaluation was at now_, with a lag of there.
 bool Newton::correct_coupled(const SaddleProblem& p, const SaddleOptions& options, SaddleReport& report) {
   constexpr int most = 6;
+  constexpr double worthwhile = 0.3;
+  const Left balance(1, options);
   const bool adds = coupling_ == Coupling::added;
   bool moved = false;
   for (int k = 0; k < most; ++k) {
@@ -41,12 +50,12 @@ bool Newton::correct_coupled(const SaddleProblem& p, const SaddleOptions& option
       coupling_ = moved ? Coupling::added : Coupling::none;
     }
     if (!direction(report)) return false;
-    const double force = report.force_residual, row = report.row_residual;
+    const Left before(report);
     try_coupled(p, 1, report);
     if (!std::isfinite(trial_.energy)) return false;
     ++report.corrections;
     const bool done = evaluator_.balanced(p, options, trial_, report);
-    if (!pays(force, row, report, options)) return false;
+    if (!Left(report).pays(worthwhile, before, balance)) return false;
     std::swap(now_, trial_);
     if (done) return true;
   }
@@ -55,25 +64,49 @@ bool Newton::correct_coupled(const SaddleProblem& p, const SaddleOptions& option
 
 // Steps that hold the lag within each. A correction that does not pay is dropped.
 bool Newton::correct_lagged(const SaddleProblem& p, const SaddleOptions& options, SaddleReport& report) {
-  const bool lags = system().has_lag();
-  const int most = lags ? 12 : 6;
+  constexpr int most = 12;
+  constexpr double worthwhile = 0.3;
+  const Left balance(1, options);
   for (int k = 0; k < most; ++k) {
-    if (lags) {
-      evaluator_.renew_lag(p, now_);
-      evaluator_.evaluate(p, Want::gradient, Definiteness::exact, now_);
-      if (evaluator_.balanced(p, options, now_, report)) return true;
-    }
+    evaluator_.renew_lag(p, now_);
+    evaluator_.evaluate(p, Want::gradient, Definiteness::exact, now_);
+    if (evaluator_.balanced(p, options, now_, report)) return true;
     evaluator_.find_gap(p, now_.x, gap_);
     if (gap_.open || !direction(report)) return false;
-    const double force = report.force_residual, row = report.row_residual;
+    const Left before(report);
     if (!std::isfinite(try_step(p, 1, report))) return false;
     ++report.corrections;
-    const bool done = evaluator_.balanced(p, options, trial_, report);
-    if (!pays(force, row, report, options)) return false;
+    evaluator_.balanced(p, options, trial_, report);
+    if (!Left(report).pays(worthwhile, before, balance)) return false;
     take_trial(p);
-    if (done && !lags) return true;
   }
   return false;
+}
+
+// Steps without a lag, as long as each halves what is left. They converge linearly, and an end just within
+// the tolerance would be as far off as the softest way to move makes of it: those that arrive go on for two
+// digits more, or until they gain nothing.
+bool Newton::correct_plain(const SaddleProblem& p, const SaddleOptions& options, SaddleReport& report) {
+  constexpr int most = 14;
+  constexpr double worthwhile = 0.5, deeper = 1e-2;
+  const Left balance(1, options), deep(deeper, options);
+  bool done = evaluator_.balanced(p, options, now_, report);
+  for (int k = 0; k < most && !(done && Left(report).within(deep)) && !interrupted(); ++k) {
+    evaluator_.find_gap(p, now_.x, gap_);
+    if (gap_.open || !direction(report)) break;
+    const Left before(report);
+    if (!std::isfinite(try_step(p, 1, report))) break;
+    ++report.corrections;
+    const bool arrived = evaluator_.balanced(p, options, trial_, report);
+    if ((done && !arrived) || !Left(report).pays(worthwhile, before, done ? deep : balance)) {
+      report.force_residual = before.force;
+      report.row_residual = before.row;
+      break;
+    }
+    take_trial(p);
+    done = arrived;
+  }
+  return done;
 }
 
 // True when the state is in balance.
@@ -83,8 +116,8 @@ bool Newton::correct(const SaddleProblem& p, const SaddleOptions& options, Saddl
     if (part_) {
       evaluator_.renew_lag(p, now_);
       evaluator_.evaluate_lagging(p, now_);
-      if (evaluator_.balanced(p, options, now_, report)) return true;
     }
+    if (evaluator_.balanced(p, options, now_, report)) return true;
     coupling_ = Coupling::added;
     coupled_tolerance_ = correction_tolerance;
     const bool done = correct_coupled(p, options, report);
@@ -92,7 +125,11 @@ bool Newton::correct(const SaddleProblem& p, const SaddleOptions& options, Saddl
     // Steep friction may ask for steps that hold the lag instead.
     if (done || !part_ || !kkt_.holds(held_.held)) return done;
   }
-  return correct_lagged(p, options, report);
+  if (system().has_lag()) return correct_lagged(p, options, report);
+  inexact_ = inexact_correction;
+  const bool done = correct_plain(p, options, report);
+  inexact_ = inexact_direction;
+  return done;
 }
 
 }  // namespace isochor

@@ -73,7 +73,7 @@ bool Newton::direction(SaddleReport& report) {
       coupling_ == Coupling::added
           ? kkt_.solve_coupled(part_ ? &*part_ : nullptr, held_.rows(), work_.node_rhs, work_.row_rhs,
                                coupled_tolerance_, step_.dx, step_.lambda, seconds_)
-          : kkt_.solve(work_.node_rhs, work_.row_rhs, step_.dx, step_.lambda, seconds_);
+          : kkt_.solve(work_.node_rhs, work_.row_rhs, step_.dx, step_.lambda, seconds_, inexact_);
   report.dual.iterations += kkt_.dual_iterations() - before;
   report.krylov.iterations += kkt_.linear_iterations() - linear_before;
   report.linear_residual = kkt_.residual();

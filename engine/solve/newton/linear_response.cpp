@@ -12,6 +12,7 @@ bool Newton::factor_as_is(const SaddleProblem& p, SaddleReport& report) {
   }
   slots().set_increment(p.increment, p.memory);
   coupling_ = Coupling::none;
+  inexact_ = 0;
   evaluate_here(p);
   evaluator_.find_gap(p, now_.x, gap_);
   if (system().has_bounds()) hold_rows(Rows::later);

@@ -32,6 +32,7 @@ Newton::Newton(std::shared_ptr<const System> system, const Parallel& parallel,
 }
 
 void Newton::begin_search() {
+  inexact_ = inexact_direction;
   held_.any = false;
   watchdog_ = {};
   pace_ = {};
@@ -134,16 +135,16 @@ SaddleReport Newton::solve_from_here(const SaddleProblem& p, const SaddleOptions
     if (!find_direction(p, unmended, report))
       return fail(report.status == SaddleStatus::converged ? SaddleStatus::singular : report.status);
     ++report.iterations;
-    if (!(watchdog_.watching() && watch(p, report)) && !search(p, report))
+    if (!(watchdog_.watching() && watch(p, report)) && !search(p, report) && !search_exactly(p, report))
       return fail(SaddleStatus::line_search_failed);
     pace_.full_steps = static_cast<std::uint8_t>(pace_.full_steps << 1 | (full_step_ ? 1 : 0));
     // Steps that short lead nowhere; the work is better spent on a shorter increment, or on other stencils.
     if (pace_.creeping == 3) return fail(SaddleStatus::line_search_failed);
-    const bool done = evaluator_.balanced(p, options, now_, report);
+    const bool done = evaluator_.balanced(p, options, now_, report) && !s.has_lag();
     if (s.has_bounds()) damp_cycles(report);
     if (progress) progress(report.iterations, report.force_residual, report.row_residual);
-    // With a lag, balance counts only once it is renewed.
-    if ((done && !s.has_lag()) || correct(p, options, report)) return report;
+    // With a lag, balance counts only once it is renewed. Corrections improve what is in balance.
+    if (correct(p, options, report) || done) return report;
     if (left_all_bounds()) return fail(SaddleStatus::diverged);
   }
 }

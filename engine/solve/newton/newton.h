@@ -43,6 +43,7 @@ class Newton : public SaddlePoint {
   bool mend_direction(const SaddleProblem& p, SaddleReport& report);
   double longest_step(double tau);
   bool search(const SaddleProblem& p, SaddleReport& report);
+  bool search_exactly(const SaddleProblem& p, SaddleReport& report);
   void set_trial(double tau);
   void try_coupled(const SaddleProblem& p, double tau, SaddleReport& report);
   bool correct(const SaddleProblem& p, const SaddleOptions& options, SaddleReport& report);
@@ -60,6 +61,10 @@ class Newton : public SaddlePoint {
   Coupling coupling_ = Coupling::none;
   double coupled_tolerance_ = 0;                        // of Coupling::added
   static constexpr double correction_tolerance = 1e-2;  // of the linear systems of corrections
+  // Of the linear systems of directions, which need not be more exact than what is linear about the problem;
+  // 0: as exact as they can be.
+  double inexact_ = 0;
+  static constexpr double inexact_direction = 1e-2, inexact_correction = 1e-1;
 
  private:
   struct LineSearch;
@@ -75,6 +80,7 @@ class Newton : public SaddlePoint {
   bool may_go_uphill() const;
   bool watch(const SaddleProblem& p, SaddleReport& report);
   bool correct_lagged(const SaddleProblem& p, const SaddleOptions& options, SaddleReport& report);
+  bool correct_plain(const SaddleProblem& p, const SaddleOptions& options, SaddleReport& report);
   void rest_gap(const SaddleReport& report);
   bool out_of_patience(const SaddleOptions& options, int iteration, int factorizations) const;
   void damp_cycles(const SaddleReport& report);

@@ -184,4 +184,14 @@ bool Newton::search(const SaddleProblem& p, SaddleReport& report) {
   return true;
 }
 
+// Once more along a direction that is as exact as it can be.
+bool Newton::search_exactly(const SaddleProblem& p, SaddleReport& report) {
+  if (interrupted()) return false;
+  evaluator_.evaluate(p, Want::gradient, Definiteness::exact, now_);
+  inexact_ = 0;
+  const bool found = direction(report) && search(p, report);
+  inexact_ = inexact_direction;
+  return found;
+}
+
 }  // namespace isochor

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "engine/solvers/gmres.h"
 #include "engine/solvers/iterative/multigrid.h"
 #include "engine/solvers/linear_solver.h"
 #include "engine/solvers/saddle_matrix.h"
@@ -32,7 +34,12 @@ class IterativeSolver final : public LinearSolver {
 
   FactorReport analyze(const SymmetricPattern& pattern) override;
   FactorReport factor(std::span<const double> values) override;
-  SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) override;
+  SolveReport solve(std::span<const double> right_hand_side, std::span<double> solution) override {
+    return solve_to(0, right_hand_side, solution);
+  }
+  // In the Euclidean norm, or that of the definite preconditioner.
+  SolveReport solve_to(double tolerance, std::span<const double> right_hand_side,
+                       std::span<double> solution) override;
 
   // y = preconditioner times x, in the order of the pattern.
   void precondition(std::span<const double> x, std::span<double> y);
@@ -45,7 +52,10 @@ class IterativeSolver final : public LinearSolver {
   void measure_wide_rows();
   void apply(std::span<const double> b, std::span<double> x);
   double norm_of_residual(std::span<const double> b, std::span<const double> x);
-  bool minimize(std::span<const double> b, std::span<double> x, double target, int& iterations);
+  void finish(double b_norm, std::span<double> solution, SolveReport& report);
+  bool solve_triangular(std::span<double> v);
+  bool iterate_on_triangle(double wanted, std::span<double> x, int& iterations);
+  bool minimize(double wanted, double first, std::span<double> x, int& iterations);
   double dot(std::span<const double> a, std::span<const double> b) { return dot_(loop_, a, b); }
 
   IterativeOptions options_;
@@ -56,6 +66,7 @@ class IterativeSolver final : public LinearSolver {
   const SymmetricPattern* pattern_ = nullptr;
   SaddleMatrix matrix_;
   Multigrid multigrid_;
+  std::optional<Gmres> gmres_;
   bool factored_ = false;
   double norm_ = 0, caution_ = 1;
   std::vector<double> modes_, row_inverse_;

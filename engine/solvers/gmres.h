@@ -1,18 +1,24 @@
-// The generalized minimal residual method on few vectors, each preconditioned as it comes (Saad 1993), for
-// systems next to one whose factors are at hand. It takes all its memory once and does not restart.
+// The generalized minimal residual method on few vectors, preconditioned from the right (Saad & Schultz 1986;
+// each direction as it comes: Saad 1993). It takes all its memory once and does not restart by itself.
 #pragma once
 
 #include <algorithm>
 #include <span>
 #include <vector>
 
-#include "engine/base/base.h"
+#include "engine/base/row_loop.h"
 
 namespace isochor {
 
 class Gmres {
  public:
-  Gmres(std::size_t size, int most);
+  // Of a preconditioner that rounds, its directions are kept; of one that is linear to the last digits they
+  // need not be, for half the memory and one more application.
+  enum class Directions : std::uint8_t { kept, made_again };
+
+  Gmres(std::size_t size, int most, Directions directions = Directions::kept);
+
+  void set_loop(const RowLoop& loop) { loop_ = loop; }
 
   // Of one solve: residual of x = 0, in the Euclidean norm, and what is left of it.
   double start_norm() const { return start_; }
@@ -37,19 +43,27 @@ class Gmres {
       if (exhausted_) break;
     }
     combine(k, x);
-    return k;
+    return kept_ || k == 0 || precondition(x) ? k : -1;
   }
 
  private:
   void begin(std::span<const double> b);
   bool extend(int k);
   void combine(int k, std::span<double> x);
+  double dot(std::span<const double> a, std::span<const double> b) { return dot_(loop_, a, b); }
+  void add(double factor, std::span<const double> v, std::span<double> w) const;
+  void set(double factor, std::span<const double> v, std::span<double> w) const;
   std::span<double> basis(int k) { return std::span(basis_).subspan(at(k) * size_, size_); }
-  std::span<double> direction(int k) { return std::span(direction_).subspan(at(k) * size_, size_); }
+  std::span<double> direction(int k) {
+    return std::span(direction_).subspan(kept_ ? at(k) * size_ : 0, size_);
+  }
   double& h(int row, int column) { return hessenberg_[at(column) * (at(most_) + 1) + at(row)]; }
 
   std::size_t size_;
   int most_;
+  bool kept_;
+  RowLoop loop_;
+  BlockedDot dot_;
   double start_ = 0, left_ = 0;
   bool exhausted_ = false;  // the space does not grow any more: what is there is exact
   std::vector<double> basis_, direction_, hessenberg_, cosine_, sine_, right_;

@@ -1,4 +1,4 @@
-#include "engine/math/gmres.h"
+#include "engine/solvers/gmres.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,22 +7,32 @@ namespace isochor {
 
 namespace {
 
-double dot(std::span<const double> a, std::span<const double> b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
+constexpr Index grain = 8192;
 
 }  // namespace
 
-Gmres::Gmres(std::size_t size, int most) : size_(size), most_(most) {
+Gmres::Gmres(std::size_t size, int most, Directions directions)
+    : size_(size), most_(most), kept_(directions == Directions::kept) {
   const std::size_t m = at(most);
+  dot_.allocate(size);
   basis_.resize((m + 1) * size);
-  direction_.resize(m * size);
+  direction_.resize((kept_ ? m : 1) * size);
   hessenberg_.resize(m * (m + 1));
   cosine_.resize(m);
   sine_.resize(m);
   right_.resize(m + 1);
+}
+
+void Gmres::add(double factor, std::span<const double> v, std::span<double> w) const {
+  loop_(static_cast<Index>(size_), grain, [&](Index begin, Index end) {
+    for (Index j = begin; j < end; ++j) w[at(j)] += factor * v[at(j)];
+  });
+}
+
+void Gmres::set(double factor, std::span<const double> v, std::span<double> w) const {
+  loop_(static_cast<Index>(size_), grain, [&](Index begin, Index end) {
+    for (Index j = begin; j < end; ++j) w[at(j)] = factor * v[at(j)];
+  });
 }
 
 void Gmres::begin(std::span<const double> b) {
@@ -30,9 +40,7 @@ void Gmres::begin(std::span<const double> b) {
   exhausted_ = false;
   std::fill(right_.begin(), right_.end(), 0.0);
   right_[0] = start_;
-  const double inverse = start_ > 0 ? 1 / start_ : 0;
-  const auto v = basis(0);
-  for (std::size_t i = 0; i < size_; ++i) v[i] = inverse * b[i];
+  set(start_ > 0 ? 1 / start_ : 0, b, basis(0));
 }
 
 // basis(k + 1) holds A z_k: made orthogonal to the basis (modified Gram-Schmidt), its column of the
@@ -43,7 +51,7 @@ bool Gmres::extend(int k) {
   for (int i = 0; i <= k; ++i) {
     const auto v = basis(i);
     const double c = h(i, k) = dot(v, w);
-    for (std::size_t j = 0; j < size_; ++j) w[j] -= c * v[j];
+    add(-c, v, w);
   }
   double norm = std::sqrt(dot(w, w));
   if (!std::isfinite(norm) || !(before > 0)) return false;
@@ -51,8 +59,7 @@ bool Gmres::extend(int k) {
     norm = 0;
     exhausted_ = true;
   }
-  const double inverse = norm > 0 ? 1 / norm : 0;
-  for (double& v : w) v *= inverse;
+  set(norm > 0 ? 1 / norm : 0, w, w);
   for (int i = 0; i < k; ++i) {
     const double a = h(i, k), b = h(i + 1, k);
     h(i, k) = cosine_[at(i)] * a + sine_[at(i)] * b;
@@ -76,10 +83,7 @@ void Gmres::combine(int k, std::span<double> x) {
     right_[at(i)] = sum / h(i, i);
   }
   std::fill(x.begin(), x.end(), 0.0);
-  for (int i = 0; i < k; ++i) {
-    const auto z = direction(i);
-    for (std::size_t j = 0; j < size_; ++j) x[j] += right_[at(i)] * z[j];
-  }
+  for (int i = 0; i < k; ++i) add(right_[at(i)], kept_ ? direction(i) : basis(i), x);
 }
 
 }  // namespace isochor
