@@ -57,6 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static_cast<live::Picture&>(shown) = s.picture(true);
   shown.values = std::make_shared<std::vector<std::vector<double>>>(shown.frame.fields);
   fuzz::require(shown.dials.size() == s.dials().size(), "a picture lacks controls");
-  fuzz::require(!live::picture_message(s, shown, "von_mises", {}).empty(), "a picture is empty");
+  fuzz::require(!live::picture_message(s, shown, {"von_mises", true, true}, {}).empty(),
+                "a picture is empty");
   return 0;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "engine/base/text.h"
 #include "isochor/effects.h"
@@ -105,13 +106,15 @@ double spring_for(const SceneDef& scene, double extent) {
   return 0.006 * extent * (softest > 0 ? softest : 1e5);
 }
 
-Dials::Dials(const SceneDef& scene, double stiffness) : scene_(scene), changed_(scene) {
+Dials::Dials(const SceneDef& scene, Poses& poses, double stiffness, double extent)
+    : scene_(scene), poses_(poses), changed_(scene) {
   const double middle = round_up(0.7 * stiffness);
   add(
       {"Hand", "Spring of a pull", "N/m", middle / 50, middle * 50, true},
       [stiffness](double) { return stiffness; },
       [](double, SceneDef&, BuiltScene&) -> Result<void> { return {}; });
   add_amounts();
+  add_poses(extent);
   add_gravity();
   add_materials();
   add_friction();
@@ -192,6 +195,36 @@ void Dials::add_amounts() {
       amount({"Supports", d.name, "m", -high * way, high * way, false}, dirichlet_kind, i, d.amount, way);
     else if (way > 0 || d.angle != 0)
       scale("Supports", d.name, dirichlet_kind, i, d.amount);
+  }
+}
+
+// Three of the way and three of the turn, of which each is set with what the others say.
+void Dials::add_poses(double extent) {
+  constexpr double degree = std::numbers::pi / 180;
+  for (std::size_t thing = 0; thing < poses_.count(); ++thing) {
+    const double most = round_up(std::max(0.5 * extent, 1.2 * poses_.reach(thing)));
+    for (int k = 0; k < 6; ++k) {
+      const bool turn = k >= 3;
+      const int axis = k % 3;
+      const double unit = turn ? degree : 1;
+      const auto component = [turn, axis](Placement& p) -> double& {
+        return (turn ? p.turn : p.shift)[axis];
+      };
+      const std::string name = (turn ? "turned about " : "along ") + std::string(1, "xyz"[axis]);
+      const double high = turn ? 180 : most;
+      add(
+          {"Pose of " + poses_.name(thing), name, turn ? "\u00b0" : "m", -high, high, false},
+          [this, thing, component, unit](double t) {
+            Placement p = poses_.wanted(thing, t);
+            return component(p) / unit;
+          },
+          [this, thing, component, unit](double value, SceneDef&, BuiltScene& built) -> Result<void> {
+            Placement p = poses_.wanted(thing, built.world.time());
+            component(p) = value * unit;
+            poses_.want(thing, p);
+            return {};
+          });
+    }
   }
 }
 

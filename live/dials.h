@@ -1,5 +1,5 @@
-// What of a scene can be changed while it runs: amounts of its effects, gravity, constants of materials,
-// friction, damping.
+// What of a scene can be changed while it runs: amounts of its effects, poses, gravity, constants of
+// materials, friction, damping.
 #pragma once
 
 #include <functional>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/scene.h"
+#include "live/poses.h"
 
 namespace isochor::live {
 
@@ -20,8 +20,8 @@ struct Dial {
 
 class Dials {
  public:
-  // `stiffness`: of the spring by which points are pulled at [N/m].
-  Dials(const SceneDef& scene, double stiffness);
+  // `stiffness`: of the spring by which points are pulled at [N/m]; `extent`: of the bodies [m].
+  Dials(const SceneDef& scene, Poses& poses, double stiffness, double extent);
   Dials(const Dials&) = delete;
   Dials& operator=(const Dials&) = delete;
 
@@ -44,12 +44,14 @@ class Dials {
   };
   void add(Dial dial, std::function<double(double)> given, Apply apply);
   void add_amounts();
+  void add_poses(double extent);
   void add_gravity();
   void add_materials();
   void add_friction();
   void add_damping();
 
   const SceneDef& scene_;
+  Poses& poses_;
   SceneDef changed_;                           // with the constants that were set
   std::vector<std::optional<EffectId>> drag_;  // by body, where it was added here
   std::vector<Dial> list_;

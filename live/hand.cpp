@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "live/turns.h"
+
 namespace isochor::live {
 
 namespace {
@@ -28,18 +30,6 @@ std::vector<Index> nodes_around(const Mesh& mesh, const Vec3& point, double radi
     if (k < least || all[k].first <= radius) out.push_back(all[k].second);
   }
   return out;
-}
-
-// A turn about an axis as a unit quaternion.
-std::array<double, 4> quaternion(const Vec3& axis, double angle) {
-  const double s = std::sin(0.5 * angle);
-  return {std::cos(0.5 * angle), s * axis.x, s * axis.y, s * axis.z};
-}
-
-Vec3 turned(const std::array<double, 4>& q, const Vec3& v) {
-  const Vec3 u{q[1], q[2], q[3]};
-  const Vec3 t = 2.0 * cross(u, v);
-  return v + q[0] * t + cross(u, t);
 }
 
 // The rigid motion of a patch now: a point X of it is at turn X + shift.

@@ -1,6 +1,8 @@
 #include "live/hub.h"
 
+#include <algorithm>
 #include <charconv>
+#include <string_view>
 
 namespace isochor::live {
 
@@ -10,6 +12,15 @@ constexpr std::chrono::seconds kAbsent{12};          // without a word: gone
 constexpr std::chrono::milliseconds kPatience{800};  // for a picture; a viewer that is gone is noticed then
 
 const char* const kUnknown = "this viewer is not known (any more); join again";
+
+bool has_word(std::string_view list, std::string_view word) {
+  for (std::size_t at = 0; at <= list.size();) {
+    const std::size_t end = std::min(list.find(',', at), list.size());
+    if (list.substr(at, end - at) == word) return true;
+    at = end + 1;
+  }
+  return false;
+}
 
 }  // namespace
 
@@ -69,7 +80,8 @@ Answer Hub::scene(const std::string& viewer, Clock::time_point now) {
   return {200, scene_message(player_.simulation(), readonly_), true};
 }
 
-Answer Hub::picture(const std::string& viewer, const std::string& after, const std::string& field) {
+Answer Hub::picture(const std::string& viewer, const std::string& after, const std::string& field,
+                    const std::string& wants) {
   std::uint64_t number = 0;
   const auto read = std::from_chars(after.data(), after.data() + after.size(), number);
   {
@@ -82,6 +94,7 @@ Answer Hub::picture(const std::string& viewer, const std::string& after, const s
     if (!v->pictures.take(now)) return refuse_counted(429, "too many pictures are asked for; ask less often");
   }
   const ShownPtr shown = player_.wait(number, is_computed(player_.simulation(), field), kPatience);
+  const Wish wish{field, has_word(wants, "forces"), has_word(wants, "fibers")};
   Audience audience;
   {
     const auto now = Clock::now();
@@ -90,7 +103,7 @@ Answer Hub::picture(const std::string& viewer, const std::string& after, const s
     forget_absent(now);
     audience = {viewer == driver_, static_cast<int>(viewers_.size()), refused_};
   }
-  return {200, picture_message(player_.simulation(), *shown, field, audience), true};
+  return {200, picture_message(player_.simulation(), *shown, wish, audience), true};
 }
 
 Answer Hub::command(const std::string& viewer, std::string_view text, Clock::time_point now) {

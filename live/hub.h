@@ -30,7 +30,9 @@ class Hub {
   Answer leave(const std::string& viewer);
   Answer scene(const std::string& viewer, Clock::time_point now);
   // The newest picture, waited for while it has number `after`.
-  Answer picture(const std::string& viewer, const std::string& after, const std::string& field);
+  // `wants`: words of "forces" and "fibers" with commas between; others are passed over.
+  Answer picture(const std::string& viewer, const std::string& after, const std::string& field,
+                 const std::string& wants = "");
   // A command as text.
   Answer command(const std::string& viewer, std::string_view text, Clock::time_point now);
   // For what was refused before it came to a viewer.

@@ -126,6 +126,8 @@ std::string scene_message(const Simulation& simulation, bool readonly) {
                      {"dials", dials},
                      {"measures", measures},
                      {"elements", simulation.elements()},
+                     {"forces", has_contact(scene)},
+                     {"fibers", simulation.has_fibers()},
                      {"handles", Hand::most}};
   Writer out(head);
   out.points(s.rest);
@@ -182,16 +184,21 @@ Json picture_head(const Simulation& simulation, const Shown& shown, const Audien
 
 }  // namespace
 
-std::string picture_message(const Simulation& simulation, const Shown& shown, const std::string& field,
+std::string picture_message(const Simulation& simulation, const Shown& shown, const Wish& wish,
                             const Audience& audience) {
   const PageScene& s = simulation.shape();
   Json head = picture_head(simulation, shown, audience);
   const std::vector<double>* values = nullptr;
   const std::size_t computed = shown.values ? std::min(vertex_fields(s), shown.values->size()) : 0;
   for (std::size_t f = 0; f < computed; ++f) {
-    if (s.fields[f].name == field && is_computed(simulation, field)) values = &(*shown.values)[f];
+    if (s.fields[f].name == wish.field && is_computed(simulation, wish.field)) values = &(*shown.values)[f];
   }
-  head["field"] = values ? Json(field) : Json(nullptr);
+  const std::vector<PageForce> none;
+  const auto& forces = wish.forces ? shown.frame.forces : none;
+  const std::vector<Vec3> fibers = wish.fibers ? shown.frame.fibers : std::vector<Vec3>();
+  head["field"] = values ? Json(wish.field) : Json(nullptr);
+  head["forces"] = forces.size();
+  head["fibers"] = fibers.size();
   head["values"] = values ? values->size() : 0;
   Writer out(head);
   out.points(shown.frame.positions);
@@ -199,6 +206,8 @@ std::string picture_message(const Simulation& simulation, const Shown& shown, co
   for (const auto& line : shown.frame.lines) out.points(line);
   out.points(shown.frame.probes);
   out.points(shown.frame.contacts);
+  for (const PageForce& f : forces) out.points({f.at, f.normal, f.friction});
+  out.points(fibers);
   return out.take();
 }
 

@@ -19,9 +19,16 @@ struct Audience {
   std::uint64_t refused = 0;  // messages, of all viewers together
 };
 
+// What a viewer wants beside the shape.
+struct Wish {
+  std::string field;    // one of the scene; any other name: none
+  bool forces = false;  // of contacts
+  bool fibers = false;
+};
+
 // Vertices (f32 x y z), values of the field (f32 a vertex of a body; NaN where there is none), points of
-// lines, probes, contacts. `field` is one of the scene; any other name: none.
-std::string picture_message(const Simulation& simulation, const Shown& shown, const std::string& field,
+// lines, probes, contacts, forces (point, normal force, friction), both ends of fibers.
+std::string picture_message(const Simulation& simulation, const Shown& shown, const Wish& wish,
                             const Audience& audience);
 
 // Whether a field of this name has to be computed for its pictures: not displacements, nor maps.

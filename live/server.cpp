@@ -95,7 +95,7 @@ void Server::Impl::serve() {
   });
   http.Get("/picture", [this](const httplib::Request& request, httplib::Response& response) {
     send(response, hub.picture(request.get_header_value(kViewer), request.get_param_value("after"),
-                               request.get_param_value("field")));
+                               request.get_param_value("field"), request.get_param_value("wants")));
   });
   http.Post("/command", [this](const httplib::Request& request, httplib::Response& response) {
     send(response, hub.command(request.get_header_value(kViewer), request.body, Hub::Clock::now()));

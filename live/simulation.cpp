@@ -59,7 +59,8 @@ Result<void> Simulation::start() {
   shape_.emplace(RunView{scene_, *built_, shown_});
   maps_ = shape_->frame({scene_, *built_, shown_}, {}).fields;
   const double extent = extent_of(shape_->scene());
-  dials_ = std::make_unique<Dials>(scene_, spring_for(scene_, extent));
+  poses_.emplace(scene_, *built_, extent);
+  dials_ = std::make_unique<Dials>(scene_, *poses_, spring_for(scene_, extent), extent);
   hand_ = Hand(extent);
   list_measures();
   return {};
@@ -182,6 +183,7 @@ Result<void> Simulation::begin_again() {
   built_->world = std::move(fresh).value();
   hand_.forget();
   dials_->forget();
+  poses_->forget(*built_);
   report_ = {};
   step_ = 0;
   seconds_ = 0;
@@ -190,13 +192,15 @@ Result<void> Simulation::begin_again() {
 }
 
 bool Simulation::settled() const {
-  if (dynamic() || changed_ || !hand_.arrived()) return false;
+  if (dynamic() || changed_ || !hand_.arrived() || !poses_->arrived(built_->world.time())) return false;
   return built_->world.time() >= scene_.analysis.duration - 0.5 * plan_.h;
 }
 
 StepEnd Simulation::advance() {
-  if (auto r = hand_.prepare(*built_); !r) {
-    message_ = r.error();
+  auto prepared = hand_.prepare(*built_);
+  if (prepared) prepared = poses_->prepare(*built_, plan_.h);
+  if (!prepared) {
+    message_ = prepared.error();
     failed_ = true;
     return StepEnd::failed;
   }

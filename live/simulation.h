@@ -70,6 +70,7 @@ class Simulation {
   const std::vector<std::vector<double>>& maps() const { return maps_; }
   // What building the scene has noticed.
   std::vector<std::string> notes() const;
+  bool has_fibers() const { return shape_->has_fibers(); }
   Index elements() const { return shown_.elements; }
   double step_length() const { return plan_.h; }
   bool dynamic() const { return scene_.analysis.type == AnalysisType::dynamics; }
@@ -93,6 +94,7 @@ class Simulation {
   std::optional<BuiltScene> built_;
   std::optional<World> beginning_;  // of which every beginning is a copy
   std::optional<PageShape> shape_;
+  std::optional<Poses> poses_;
   std::unique_ptr<Dials> dials_;
   Hand hand_;
   std::unique_ptr<StepRecorder> recorder_;

@@ -3,6 +3,7 @@
 #include <initializer_list>
 
 #include "scenes/body_parts.h"
+#include "scenes/material_fibers.h"
 
 namespace isochor {
 
@@ -302,7 +303,7 @@ static Result<std::vector<Vec3>> directions_of(const std::string& name, const Me
   return out;
 }
 
-static Result<std::vector<FiberFamily>> make_fibers(const MaterialDef& def, const Mesh* mesh) {
+Result<std::vector<FiberFamily>> fibers_of(const MaterialDef& def, const Mesh* mesh) {
   std::vector<FiberFamily> families;
   for (std::size_t i = 0; i < def.fibers.size(); ++i) {
     FiberFamily& family = families.emplace_back(def.fibers[i]);
@@ -323,7 +324,7 @@ Result<MaterialPtr> make_material(const MaterialDef& def, const std::string& fol
   if (matrix && !def.prony.empty())
     matrix = with_prony_series(std::move(matrix).value(), def.prony, def.static_time);
   if (matrix && !def.fibers.empty()) {
-    auto families = make_fibers(def, mesh);
+    auto families = fibers_of(def, mesh);
     if (!families) return families.failure();
     matrix = with_fibers(std::move(matrix).value(), families.value());
   }

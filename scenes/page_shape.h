@@ -25,6 +25,7 @@ class PageShape {
   PageFrame frame(const RunView& view, const std::vector<BodyFields>& fields) const;
   // Triangles that cuts are to show the inside of; all where no chamber is.
   const std::vector<Index>& to_cut() const { return to_cut_; }
+  bool has_fibers() const { return overlays_.has_fibers(); }
 
  private:
   // The node of each vertex; for the surface in a lattice its points instead.

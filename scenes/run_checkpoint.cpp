@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::uint64_t kMagic = 0x6e75726f686373ull;  // "schorun"
-constexpr std::uint64_t kVersion = 2;
+constexpr std::uint64_t kVersion = 3;
 
 struct Header {
   std::uint64_t magic = kMagic, version = kVersion, bytes = 0;

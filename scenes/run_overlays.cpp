@@ -8,7 +8,9 @@
 
 #include "constraints/contact/rigid/rigid_body.h"
 #include "constraints/contact/shape/obstacle_shape.h"
+#include "engine/mesh/cell_shape.h"
 #include "isochor/painted.h"
+#include "scenes/material_fibers.h"
 
 namespace isochor {
 
@@ -52,7 +54,8 @@ Triangles round_shape(double radius, double straight) {
   Triangles t;
   Index last = -1;
   for (int half = 0; half < 2; ++half) {
-    for (int k = 0; k <= kAlong / 2; ++k) {
+    // Halves without a straight part share their ring.
+    for (int k = half == 1 && straight == 0 ? 1 : 0; k <= kAlong / 2; ++k) {
       const double angle = 0.5 * std::numbers::pi * (half == 0 ? 2.0 * k / kAlong - 1 : 2.0 * k / kAlong);
       const double shift = (half == 0 ? -0.5 : 0.5) * straight;
       const Index ring = t.ring(radius * std::cos(angle), shift + radius * std::sin(angle));
@@ -279,7 +282,7 @@ std::size_t number_of(std::vector<std::string>& names, const std::string& name) 
 
 void RunOverlays::add_solid(const Obstacle& shape, const std::string& name, const std::string& rigid,
                             PageScene& scene) {
-  Shown solid{shape, rigid, {}};
+  Shown solid{shape, rigid, {}, {}};
   // A plane lies below the bodies, wherever its own origin is.
   Triangles t = triangles_of(shape, 0.75 * extent_);
   if (shape.shape == ObstacleShape::plane) {
@@ -382,6 +385,7 @@ void RunOverlays::start(const RunView& view, PageScene& scene,
     touched_.push_back(solids_.size());
     if (def.against.empty()) {
       add_solid(view.built.obstacles[c], def.name, "", scene);
+      solids_.back().contact = c;
       continue;
     }
     for (std::size_t r = 0; r < s.rigid_bodies.size(); ++r) {
@@ -393,13 +397,145 @@ void RunOverlays::start(const RunView& view, PageScene& scene,
     for (const auto& path : w.paths) add_path(view, w.body, path, scene, w.name, {}, {});
   }
   add_maps(view, scene, triangle_cell);
+  add_fibers(view, scene, triangle_cell);
+}
+
+namespace {
+
+// The edges of a cell at its middle as columns, and the middle itself.
+struct CellAxes {
+  Vec3 middle{};
+  std::array<Vec3, 3> edge{};
+  Vec3 point(const Vec3& own) const { return middle + own.x * edge[0] + own.y * edge[1] + own.z * edge[2]; }
+  // What it takes of the edges to make up v; none where the cell is flat.
+  std::optional<Vec3> parts(const Vec3& v) const {
+    const double det = dot(edge[0], cross(edge[1], edge[2]));
+    if (!(std::abs(det) > 0)) return {};
+    return (1 / det) * Vec3{dot(v, cross(edge[1], edge[2])), dot(v, cross(edge[2], edge[0])),
+                            dot(v, cross(edge[0], edge[1]))};
+  }
+};
+
+CellAxes axes_of(std::span<const Index> corners, std::span<const Vec3> x) {
+  const auto at = [&](std::size_t k) { return x[static_cast<std::size_t>(corners[k])]; };
+  CellAxes out;
+  for (std::size_t k = 0; k < corners.size(); ++k)
+    out.middle += (1.0 / static_cast<double>(corners.size())) * at(k);
+  if (corners.size() == 4) {
+    for (std::size_t k = 0; k < 3; ++k) out.edge[k] = at(k + 1) - at(0);
+    return out;
+  }
+  for (std::size_t a = 0; a < 8; ++a) {
+    for (std::size_t k = 0; k < 3; ++k) out.edge[k] += (0.25 * kHexSign[a][k]) * at(a);
+  }
+  return out;
+}
+
+// Of each cell the directions of the fibers in it at rest.
+std::vector<std::vector<Vec3>> fibers_in_cells(const SceneBody& body, const Mesh& mesh) {
+  std::vector<std::vector<Vec3>> out(static_cast<std::size_t>(mesh.cell_count()));
+  for (const MaterialDef& m : body.materials) {
+    if (m.fibers.empty()) continue;
+    const auto families = fibers_of(m, &mesh);
+    if (!families) continue;  // a world with them would not have been built
+    for (std::size_t c = 0; c < out.size(); ++c) {
+      const std::string region = region_of(mesh, static_cast<Index>(c));
+      const bool elsewhere = std::any_of(body.materials.begin(), body.materials.end(),
+                                         [&](const MaterialDef& other) { return other.region == region; });
+      if (m.region.empty() ? elsewhere && !region.empty() : m.region != region) continue;
+      for (const FiberFamily& f : families.value()) {
+        const Vec3 a = f.directions.empty() ? f.direction : f.directions[c];
+        if (const double size = std::sqrt(dot(a, a)); size > 0) out[c].push_back((1 / size) * a);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+// On the surface and, for cuts, inside: so many that they can be told from each other.
+void RunOverlays::add_fibers(const RunView& view, const PageScene& scene,
+                             const std::vector<std::vector<Index>>& triangle_cell) {
+  constexpr std::size_t most = 600;  // on the surface, and as many inside
+  struct Spot {
+    std::size_t body;
+    Index cell;
+    std::optional<Vec3> at;
+  };
+  std::vector<std::vector<std::vector<Vec3>>> directions;
+  std::vector<Spot> outside, inside;
+  std::size_t first = 0;
+  for (std::size_t b = 0; b < triangle_cell.size(); ++b) {
+    const Mesh& mesh = view.built.world.mesh(view.built.bodies[b]);
+    directions.push_back(fibers_in_cells(view.scene.bodies[b], mesh));
+    const auto& here = directions.back();
+    for (std::size_t t = 0; t < triangle_cell[b].size(); ++t) {
+      const Index cell = triangle_cell[b][t];
+      if (here[static_cast<std::size_t>(cell)].empty()) continue;
+      Vec3 at{};
+      for (std::size_t k = 0; k < 3; ++k)
+        at += (1.0 / 3) * scene.rest[static_cast<std::size_t>(scene.triangles[3 * (first + t) + k])];
+      outside.push_back({b, cell, at});
+    }
+    for (std::size_t c = 0; c < here.size(); ++c) {
+      if (!here[c].empty()) inside.push_back({b, static_cast<Index>(c), {}});
+    }
+    while (first < scene.triangle_part.size() && scene.triangle_part[first] == static_cast<Index>(b)) ++first;
+  }
+  const double half = 0.012 * extent_;
+  for (const auto* spots : {&outside, &inside}) {
+    const std::size_t stride = (spots->size() + most - 1) / most;
+    for (std::size_t i = 0; i < spots->size(); i += stride) {
+      const Spot& spot = (*spots)[i];
+      const Mesh& mesh = view.built.world.mesh(view.built.bodies[spot.body]);
+      Fiber fiber;
+      fiber.body = spot.body;
+      fiber.count = mesh.cell_type == CellType::hex8 ? 8 : 4;
+      const auto stride_of_cell = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
+      std::copy_n(mesh.cells.begin() +
+                      static_cast<std::ptrdiff_t>(stride_of_cell * static_cast<std::size_t>(spot.cell)),
+                  fiber.count, fiber.corners.begin());
+      const CellAxes axes = axes_of(std::span(fiber.corners).first(fiber.count), mesh.nodes);
+      for (const Vec3& a : directions[spot.body][static_cast<std::size_t>(spot.cell)]) {
+        const auto along = axes.parts(half * a),
+                   middle = axes.parts(spot.at.value_or(axes.middle) - axes.middle);
+        if (!along || !middle) continue;
+        fiber.along = *along;
+        fiber.middle = *middle;
+        fibers_.push_back(fiber);
+      }
+    }
+  }
+}
+
+// What a contact does to a body, and lines along fibers.
+void RunOverlays::append_arrows(const RunView& view, PageFrame& frame) const {
+  const World& world = view.built.world;
+  if (!view.scene.contacts.empty() || !view.scene.surface_contacts.empty()) {
+    for (const ContactPoint& c : world.contacts())
+      frame.forces.push_back({c.position, c.normal_force, c.friction});
+  }
+  for (const Fiber& f : fibers_) {
+    const CellAxes axes =
+        axes_of(std::span(f.corners).first(f.count), world.positions(view.built.bodies[f.body]));
+    frame.fibers.push_back(axes.point(f.middle - f.along));
+    frame.fibers.push_back(axes.point(f.middle + f.along));
+  }
+}
+
+// An obstacle is where the built scene has it now, which may be elsewhere than it was at the start.
+static Place now(const Obstacle& shape, const std::string& rigid, const std::optional<std::size_t>& contact,
+                 const RunView& view, const StepRecord& record) {
+  if (!contact) return place_of(shape, rigid, record);
+  return {pose_of(shape, view.built.obstacles[*contact].motion, record.time), {}, false};
 }
 
 void RunOverlays::append(const RunView& view, PageFrame& frame) const {
   const StepRecord& record = view.result.records.back();
   const World& world = view.built.world;
   for (const Shown& solid : solids_) {
-    const Place place = place_of(solid.shape, solid.rigid, record);
+    const Place place = now(solid.shape, solid.rigid, solid.contact, view, record);
     for (const Vec3& y : solid.points) {
       frame.positions.push_back(place.to_world(y));
       for (auto& field : frame.fields) field.push_back(0);
@@ -420,7 +556,7 @@ void RunOverlays::append(const RunView& view, PageFrame& frame) const {
     const ContactDef& c = view.scene.contacts[k];
     if (!c.rigid.empty()) continue;
     const Shown& solid = solids_[touched_[k]];
-    const Place place = place_of(solid.shape, solid.rigid, record);
+    const Place place = now(solid.shape, solid.rigid, solid.contact, view, record);
     const BodyId id = view.built.bodies[static_cast<std::size_t>(c.body)];
     const auto x = world.positions(id);
     for (const Index n : contact_nodes(world.mesh(id), c.surfaces)) {
@@ -428,6 +564,7 @@ void RunOverlays::append(const RunView& view, PageFrame& frame) const {
       if (distance_value(solid.shape, place.to_own(p)) <= touching) frame.contacts.push_back(p);
     }
   }
+  append_arrows(view, frame);
 }
 
 }  // namespace isochor

@@ -34,7 +34,7 @@ const FLAGS = [
 ];
 
 export class Browser {
-  static async launch({ timeout = 60000 } = {}) {
+  static async launch({ timeout = 300000 } = {}) {
     const path = findChromium();
     if (!path) throw new Error(MISSING);
     const browser = new Browser();
@@ -146,7 +146,8 @@ class Page {
     return result.value;
   }
 
-  async waitFor(expression, timeout = 60000) {
+  /** The timeout is for what never comes: on a machine with other work a minute is not long. */
+  async waitFor(expression, timeout = 300000) {
     const end = Date.now() + timeout;
     for (;;) {
       if (await this.evaluate(expression).catch(() => false)) return;

@@ -2,7 +2,9 @@
 // Measures a live scene in headless Chromium with software rendering: the time from a moved slider to a changed picture,
 // pictures a second, and what the server costs the world. Times are medians; the world is in motion all the while.
 //
-//   node viewer/measure_live.mjs [--size 1280x800] [--slides N] [--seconds N] -- SCENE [options of isochor live]
+//   node viewer/measure_live.mjs [--size 1280x800] [--slides N] [--seconds N] [--page] -- SCENE [options of isochor live]
+//
+// --page: of the page alone what a picture takes, while the world stands still: for scenes whose steps take long.
 //
 // What the server costs a step is the time that the world's thread spends on pictures over that on steps, and the processor
 // time of the threads that talk to viewers over that of all others: shares, which a busy machine stretches alike. The
@@ -14,7 +16,7 @@ import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { Browser, MISSING, findChromium } from './chromium.mjs';
 
-const USAGE = 'usage: measure_live.mjs [--size WxH] [--slides N] [--seconds N] -- SCENE [...]';
+const USAGE = 'usage: measure_live.mjs [--size WxH] [--slides N] [--seconds N] [--page] -- SCENE [...]';
 function fail(message, code) {
   console.error(`measure_live: ${message}`);
   process.exit(code);
@@ -22,11 +24,12 @@ function fail(message, code) {
 
 let [width, height] = [1280, 800];
 let [slides, seconds] = [40, 6];
-let scene = [];
+let scene = [], pageAlone = false;
 const args = process.argv.slice(2);
 while (args.length > 0) {
   const arg = args.shift();
   if (arg === '--') scene = args.splice(0);
+  else if (arg === '--page') pageAlone = true;
   else if (arg === '--size') [width, height] = (args.shift() ?? '').split('x').map(Number);
   else if (arg === '--slides') slides = Number(args.shift());
   else if (arg === '--seconds') seconds = Number(args.shift());
@@ -37,7 +40,7 @@ if (!findChromium()) fail(MISSING, 3);
 
 const tool = process.env.ISOCHOR ?? join(dirname(fileURLToPath(import.meta.url)), '../build/isochor');
 async function start() {
-  const server = spawn(tool, ['live', ...scene, '--no-browser'], { stdio: ['ignore', 'pipe', 'ignore'] });
+  const server = spawn(tool, ['live', ...scene, '--no-browser', ...(pageAlone ? ['--paused'] : [])], { stdio: ['ignore', 'pipe', 'ignore'] });
   const link = await new Promise((done) => {
     server.stdout.once('data', (data) => done(String(data).trim()));
     server.once('exit', (code) => fail(`isochor live has ended with ${code}`, 1));
@@ -106,6 +109,45 @@ const SLIDE = (index, t) => `new Promise((done) => {
   };
 })`;
 
+/** Medians of seven, in ms: shape and colors, shadows, a pick, and drawing at each quality until it is done. */
+const PAGE = `(() => {
+  const viewer = isochorLive, { stage, frame } = viewer, gl = stage.renderer.getContext(), out = {};
+  const time = (name, work) => {
+    const all = [];
+    for (let i = 0; i < 7; ++i) {
+      const start = performance.now();
+      work();
+      all.push(performance.now() - start);
+    }
+    out[name] = all.sort((a, b) => a - b)[3];
+  };
+  time('shape and colors', () => { stage.body.setShape(frame.positions); viewer.showField(); });
+  time('shadows', () => { stage.body.shadedShape = null; stage.shade(false); });
+  time('a pick', () => viewer.pickAt({ clientX: window.innerWidth / 2, clientY: window.innerHeight / 2 }));
+  for (const quality of [0, 1, 2, 3]) time('drawing, quality ' + quality, () => { stage.drawAt(quality); gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); });
+  return { triangles: viewer.run.head.triangles, out };
+})()`;
+
+async function measurePage() {
+  const { server, link } = await start();
+  const browser = await Browser.launch();
+  try {
+    const page = await browser.open(link, { width, height });
+    await page.waitFor('window.isochorLive?.stage.opened && isochorLive.frame.field !== null');
+    await pause(1);
+    const { triangles, out } = await page.evaluate(PAGE);
+    console.log(`${triangles} triangles, ${width} x ${height}, medians of 7`);
+    for (const [what, ms] of Object.entries(out)) console.log(`${what.padEnd(20)} ${ms.toFixed(1)} ms`);
+  } finally {
+    await browser.close();
+    server.kill('SIGINT');
+  }
+}
+
+if (pageAlone) {
+  await measurePage();
+  process.exit(0);
+}
 const costs = await cost();
 const { server, link } = await start();
 const browser = await Browser.launch();

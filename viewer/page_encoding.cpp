@@ -123,22 +123,18 @@ std::vector<std::uint16_t> quantize_points(std::span<const Vec3> points, std::sp
 
 namespace {
 
-// The values are put in another order.
-void find_usual_range(QuantizedField& field, std::vector<double>& values, bool zeros) {
-  field.usual_low = field.low;
-  field.usual_high = field.high;
-  if (values.empty()) return;
+// What is left without the lowest and the highest 1/part of the values, which are put in another order.
+FieldRange range_without(std::size_t part, std::vector<double>& values, bool zeros, FieldRange all) {
+  if (values.empty()) return all;
   const auto quantile = [&](std::size_t place) {
     const auto at = values.begin() + static_cast<std::ptrdiff_t>(place);
     std::nth_element(values.begin(), at, values.end());
     return *at;
   };
-  const std::size_t cut = values.size() / 100;
-  field.usual_low = quantile(cut);
-  field.usual_high = quantile(values.size() - 1 - cut);
-  if (!zeros) return;
-  field.usual_low = std::min(field.usual_low, 0.0);
-  field.usual_high = std::max(field.usual_high, 0.0);
+  const std::size_t cut = values.size() / part;
+  FieldRange out{quantile(cut), quantile(values.size() - 1 - cut)};
+  if (zeros) out = {std::min(out.low, 0.0), std::max(out.high, 0.0)};
+  return out;
 }
 
 }  // namespace
@@ -163,7 +159,8 @@ QuantizedField quantize_field(std::span<const double> values, std::span<const st
     if (v != 0) counted.push_back(v);
   }
   if (!any) out.low = out.high = std::nan("");
-  find_usual_range(out, counted, zeros);
+  out.usual = range_without(100, counted, zeros, {out.low, out.high});
+  out.middle = range_without(20, counted, zeros, {out.low, out.high});
   // Halves first: the difference of two large numbers of opposite sign may overflow.
   const double half_span = 0.5 * out.high - 0.5 * out.low;
   out.codes.reserve(values.size());

@@ -47,13 +47,18 @@ std::vector<std::uint16_t> quantize_points(std::span<const Vec3> points, std::sp
 inline constexpr std::uint16_t invalid_code = 65535;
 inline constexpr int field_levels = 4095;  // finer than any display, and the noise below is not stored
 
+struct FieldRange {
+  double low = 0, high = 0;
+};
+
 struct QuantizedField {
   std::vector<std::uint16_t> codes;
   double low = 0, high = 0;
   std::size_t invalid = 0;  // values that were not finite
-  // From the first to the 99th hundredth of the values: what one hot spot does not set. Exact zeros, where
-  // nothing is (no contact), are in the range but not among the values it is taken from.
-  double usual_low = 0, usual_high = 0;
+  // From the first to the 99th hundredth of the values, and from the fifth to the 95th: what one hot spot, or
+  // a stiff layer, does not set. Exact zeros, where nothing is (no contact), are in the range but not among
+  // the values it is taken from.
+  FieldRange usual, middle;
 };
 // Values whose entry in skip is not zero are coded as invalid, but neither counted nor in the range. An empty
 // skip skips nothing.

@@ -26,6 +26,7 @@ struct ResultsRecorder::Content {
   std::vector<std::string> blocks;  // one a frame
   std::string frames_json;          // what the page knows of a frame before unpacking it
   std::vector<std::string> notes;
+  bool has_fibers = false;
   // Not zero for triangles of obstacles and for vertices that only these use; empty without obstacles.
   std::vector<std::uint8_t> skip_triangle, skip_vertex;
 };
@@ -193,6 +194,27 @@ std::string pack_rest(const PageScene& scene, const Box& box) {
   block.integers(edges);
   block.integers(widen(scene.cells));
   return block.packed();
+}
+
+// Forces that are not finite are left out.
+void pack_arrows(page::BlockWriter& block, const PageFrame& frame) {
+  std::vector<Vec3> forces;
+  for (const PageForce& f : frame.forces) {
+    if (page::finite(f.at) && page::finite(f.normal) && page::finite(f.friction))
+      forces.insert(forces.end(), {f.at, f.normal, f.friction});
+  }
+  block.points(forces);
+  block.points(frame.fibers);
+}
+
+double largest_force(const PageFrame& frame) {
+  double out = 0;
+  for (const PageForce& f : frame.forces) {
+    for (const Vec3& v : {f.normal, f.friction}) {
+      if (page::finite(v)) out = std::max(out, std::sqrt(dot(v, v)));
+    }
+  }
+  return out;
 }
 
 void write_box(Json& json, std::string_view name, const Box& box) {
@@ -367,6 +389,8 @@ Result<void> ResultsRecorder::append(const PageFrame& frame) {
   json.pair("time", frame.time);
   json.pair("label", frame.label);
   json.pair("displacement", displacement);
+  json.pair("force", largest_force(frame));
+  content.has_fibers = content.has_fibers || !frame.fibers.empty();
   write_box(json, "box", box);
   json.key("ranges");
   json.begin('[');
@@ -378,8 +402,10 @@ Result<void> ResultsRecorder::append(const PageFrame& frame) {
     json.value(field.low);
     json.value(field.high);
     json.count(field.invalid);
-    json.value(field.usual_low);
-    json.value(field.usual_high);
+    for (const page::FieldRange& range : {field.usual, field.middle}) {
+      json.value(range.low);
+      json.value(range.high);
+    }
     json.end(']');
   }
   json.end(']');
@@ -387,6 +413,7 @@ Result<void> ResultsRecorder::append(const PageFrame& frame) {
   for (const std::vector<Vec3>& points : frame.lines) block.points(points);
   block.points(frame.probes);
   block.points(frame.contacts);
+  pack_arrows(block, frame);
 
   std::string packed = block.packed();
   if (packed.empty()) return refuse("out of memory while compressing a frame");
@@ -446,6 +473,7 @@ Result<void> ResultsRecorder::write(const std::string& path, const PageReport& r
   write_report(json, report);
   write_strings(json, "notes", notes);
   write_scene(json, content_->scene);
+  json.pair("fibers", content_->has_fibers);
   write_box(json, "restBox", content_->rest_box);
   json.key("box");
   json.begin('{');

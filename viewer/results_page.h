@@ -56,6 +56,11 @@ struct PageScene {
   char up = 'z';                    // 'y' or 'z'
 };
 
+// What a contact does to a body at one point.
+struct PageForce {
+  Vec3 at{}, normal{}, friction{};  // [m], [N], [N]
+};
+
 // One state of the run. Values that are not finite are shown gray and counted; positions that are not finite
 // are drawn at rest and named in a note at the top of the page.
 struct PageFrame {
@@ -66,6 +71,8 @@ struct PageFrame {
   std::vector<std::vector<Vec3>> lines;     // points of each line [m]
   std::vector<Vec3> probes;                 // one a probe [m]
   std::vector<Vec3> contacts;               // contact points, any number [m]
+  std::vector<PageForce> forces = {};       // of contacts, any number
+  std::vector<Vec3> fibers = {};            // both ends of short lines along fibers [m]
 };
 
 // A curve. Curves of one group share a chart (of two units at most; more units make more charts).

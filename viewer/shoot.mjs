@@ -6,9 +6,9 @@
 // Without --page the picture shows the 3D view and its legend; with it the page as a reader sees it, at full
 // length. The key=value pairs are the options of the page:
 //   field=NAME  frame=first|last|N|t=SECONDS  view=iso|front|back|left|right|top|bottom|AZIMUTH,ELEVATION
-//   zoom=1.2  ghost=1  edges=1  cut=auto|x|y|z (cut=x:0.5 at a place, cut=-x:0.5 keeps the other half)
-//   range=LOW,HIGH|frame  full=1 (colors span all values, not 1 % to 99 % of the points)  legend=0  labels=0
-//   theme=light|dark
+//   zoom=1.2  camera=X,Y,Z,X,Y,Z  ghost=1  edges=1  arrows=forces,fibers  hide=0,2  fade=1 (parts from 0)
+//   cut=auto|x|y|z|AROUND/UP in degrees (cut=x:0.5 at a place, cut=-x:0.5 keeps the other half)
+//   range=LOW,HIGH|frame  span=all|98|90 (percent of the values that colors span)  legend=0  labels=0  theme=light|dark
 // Options that are unknown or have a value they cannot have are refused, with what there is.
 import { existsSync, renameSync, writeFileSync } from 'node:fs';
 import { resolve } from 'node:path';

@@ -82,6 +82,11 @@ try {
     }
     await there();
   }
+  // At rest it is drawn at its best.
+  if (options.steps !== null) {
+    await page.evaluate(`isochorLive.send({ do: 'pause' })`);
+    await page.waitFor('!isochorLive.frame.info.playing');
+  }
   await page.waitFor('!isochorLive.rangeTimer'); // the numbers beside the colors come a moment later
   await page.evaluate('isochorLive.stage.draw(), isochorLive.hand.place()');
   const clip = options.stage ? await page.evaluate('(({ x, y, width, height }) => ({ x, y, width, height }))(document.querySelector(".stage").getBoundingClientRect())') : undefined;

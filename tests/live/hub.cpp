@@ -133,3 +133,38 @@ TEST_CASE("a picture has the numbers that its head counts, and the field that wa
   }
   CHECK(head_of(hub.picture(viewer, "0", "../../etc/passwd"))["field"].is_null());
 }
+
+TEST_CASE("forces and fibers come to who asks for them, and nothing else is told by the word") {
+  auto made = Player::start(
+      test::small_scene({R"(contacts=[{"name": "table", "obstacle": {"position": [0, 0, -1e-3]}}])",
+                         R"(bodies[0].materials[0].fibers=[{"direction": [1, 0, 0], "k1": 10}])",
+                         "tractions[0].traction=[0,0,-20]", "metrics=[]"}),
+      {}, true);
+  if (!made) FAIL(made.error());
+  auto& p = made.value();
+  while (!p->latest()->settled) (void)p->wait(p->latest()->number, false, std::chrono::milliseconds(100));
+  Hub hub(*p, false);
+  const std::string viewer = join(hub);
+  const auto scene = head_of(hub.scene(viewer, Clock::now()));
+  CHECK(scene["forces"] == true);
+  CHECK(scene["fibers"] == true);
+  const auto points = [&](const std::string& wants) {
+    const Answer a = hub.picture(viewer, "0", "", wants);
+    const auto h = head_of(a);
+    std::size_t json = 0;
+    for (int k = 3; k >= 0; --k)
+      json = json << 8 | static_cast<unsigned char>(a.body[static_cast<std::size_t>(k)]);
+    const auto count = [&](const char* key) { return h[key].get<std::size_t>(); };
+    CHECK(a.body.size() == 4 + json +
+                               12 * (count("vertices") + count("probes") + count("contacts") +
+                                     3 * count("forces") + count("fibers")));
+    return std::pair(count("forces"), count("fibers"));
+  };
+  const auto [forces, fibers] = points("forces,fibers");
+  CHECK(forces > 0);
+  CHECK(fibers > 0);
+  CHECK(points("forces") == std::pair(forces, std::size_t{0}));
+  CHECK(points("fibers") == std::pair(std::size_t{0}, fibers));
+  for (const char* other : {"", "force", "forces.fibers", ",,", "FORCES"})
+    CHECK(points(other) == std::pair(std::size_t{0}, std::size_t{0}));
+}

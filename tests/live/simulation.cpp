@@ -117,6 +117,98 @@ TEST_CASE("sliders begin where the scene is, and move it") {
   REQUIRE(s->advance() == StepEnd::done);
 }
 
+TEST_CASE("a support is moved and turned by hand, little by little, and a reset puts it back") {
+  for (const Overrides& kind : {Overrides{}, kMoving}) {
+    Overrides overrides = kind;
+    overrides.insert(overrides.end(), {"tractions=[]", "metrics=[]"});
+    auto s = make(overrides);
+    const auto at = [&](const char* name) { return s->picture(false).dials[dial(*s, name)]; };
+    const std::uint64_t beginning = s->picture(false).hash;
+    CHECK(at("along z") == 0);
+    CHECK(at("turned about x") == 0);
+    REQUIRE(set(*s, "along z", 0.5).ok());
+    CHECK(at("along z") == 0.5);
+    for (int i = 0; i < 3; ++i) s->advance();
+    CHECK_FALSE(s->settled());
+    CHECK(tip(*s, 2) < 0.4);
+    for (int i = 0; i < 60; ++i) REQUIRE(s->advance() == StepEnd::done);
+    // The face x = 0 is where it is wanted, whatever the rest of a block in motion does.
+    const PageScene& shape = s->shape();
+    const PageFrame lifted = s->picture(false).frame;
+    for (std::size_t v = 0; v < shape.rest.size(); ++v) {
+      const Vec3 d = lifted.positions[v] - shape.rest[v] - Vec3{0, 0, 0.5};
+      if (shape.rest[v].x == 0) CHECK(dot(d, d) < 1e-18);
+    }
+    if (!s->dynamic()) {
+      CHECK(s->settled());
+      CHECK(tip(*s, 2) == Approx(0.5).margin(1e-6));
+      // About the middle of the face x = 0.
+      REQUIRE(set(*s, "turned about x", 90).ok());
+      for (int i = 0; i < 60; ++i) REQUIRE(s->advance() == StepEnd::done);
+      CHECK(s->settled());
+      CHECK(at("along z") == 0.5);
+      const PageFrame turned = s->picture(false).frame;
+      for (std::size_t v = 0; v < shape.rest.size(); ++v) {
+        const Vec3 r = shape.rest[v] - Vec3{0, 0.5, 0.5};
+        const Vec3 d = turned.positions[v] - (Vec3{0, 0.5, 1} + Vec3{r.x, -r.z, r.y});
+        CHECK(dot(d, d) < 1e-10);
+      }
+    }
+    REQUIRE(s->apply(plain(Action::reset)).ok());
+    CHECK(s->picture(false).hash == beginning);
+    CHECK(at("along z") == 0);
+  }
+}
+
+TEST_CASE("an obstacle is moved by hand, also one that moves by itself; the picture follows the world") {
+  for (const bool moving : {false, true}) {
+    const std::string motion =
+        moving ? R"(, "keyframes": [{"t": 0}, {"t": 1, "position": [0, 0, -0.3]}])" : std::string();
+    auto s =
+        make({"tractions=[]", "metrics=[]",
+              R"(contacts=[{"name": "table", "obstacle": {"position": [1, 0.5, -0.2])" + motion + "}}]"});
+    const auto& shape = s->shape();
+    const auto height = [&] {
+      double z = 0, count = 0;
+      const PageFrame frame = s->picture(false).frame;
+      for (std::size_t t = 0; t < shape.triangles.size() / 3; ++t) {
+        if (!shape.parts[static_cast<std::size_t>(shape.triangle_part[t])].obstacle) continue;
+        z += frame.positions[static_cast<std::size_t>(shape.triangles[3 * t])].z;
+        ++count;
+      }
+      return z / count;
+    };
+    std::size_t along = 0;
+    while (along < s->dials().size() &&
+           !(s->dials()[along].group == "Pose of obstacle of table" && s->dials()[along].name == "along z"))
+      ++along;
+    REQUIRE(along < s->dials().size());
+    CHECK(height() == Approx(-0.2));
+    REQUIRE(s->advance() == StepEnd::done);
+    CHECK(height() == Approx(moving ? -0.3 : -0.2));
+    CHECK(s->picture(false).dials[along] == Approx(moving ? -0.1 : 0).margin(1e-12));
+    Command c = plain(Action::set);
+    c.control = static_cast<int>(along);
+    c.value = 0.4;
+    REQUIRE(s->apply(c).ok());
+    REQUIRE(s->advance() == StepEnd::done);
+    // On its way: not where it was, not yet where it is wanted.
+    CHECK(height() > (moving ? -0.3 : -0.2) + 1e-3);
+    CHECK(height() < 0.1);
+    for (int i = 0; i < 40; ++i) REQUIRE(s->advance() == StepEnd::done);
+    CHECK(height() == Approx(0.2));
+    CHECK(s->settled());
+    // It has lifted the free end; contact is where the table is drawn.
+    CHECK(tip(*s, 2) > 0.1);
+    const PageFrame frame = s->picture(false).frame;
+    REQUIRE_FALSE(frame.forces.empty());
+    for (const PageForce& f : frame.forces) CHECK(f.at.z == Approx(0.2).margin(1e-4));
+    CHECK_FALSE(frame.contacts.empty());
+    REQUIRE(s->apply(plain(Action::reset)).ok());
+    CHECK(height() == Approx(-0.2));
+  }
+}
+
 TEST_CASE("what is out of bounds is refused, and nothing has changed") {
   auto s = make();
   s->advance();

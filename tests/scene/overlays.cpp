@@ -8,6 +8,7 @@
 #include "constraints/contact/shape/obstacle_shape.h"
 #include "page_surface.h"
 #include "scenes/library.h"
+#include "scenes/page_shape.h"
 #include "scenes/run_overlays.h"
 #include "scenes/run_page.h"
 #include "small_scene.h"
@@ -118,6 +119,16 @@ TEST_CASE("obstacles, free bodies, cables, contact points and zones reach the pa
   CHECK(lowest(1, page.rest) == Approx(2.8));
   CHECK(lowest(1, frame.positions) == Approx(2.79));
   CHECK(lowest(2, frame.positions) == Approx(0).margin(1e-12));
+  // The floor carries the block, at the nodes that touch it.
+  Vec3 carried{};
+  for (const PageForce& f : frame.forces) {
+    CHECK(std::abs(f.at.z) < 1e-5);
+    carried += f.normal;
+  }
+  const auto pairs = world.contact_pairs();
+  REQUIRE(pairs.size() == 1);
+  CHECK(carried.z > 0);
+  CHECK(carried.z == Approx(pairs[0].force.z));
   // Zones do not change: the half of the triangles below is in the zone, those above are not.
   REQUIRE(frame.fields.size() == 1);
   for (std::size_t t = 0; t < cells[0].size(); ++t) {
@@ -300,11 +311,54 @@ TEST_CASE("the contact pressure of a run reaches its page") {
       numbers.begin(), numbers.end(), [](char c) { return c == '[' || c == ']' || c == ','; }, ' ');
   std::istringstream in(numbers);
   const std::vector<double> bounds{std::istream_iterator<double>(in), {}};
-  INFO(numbers);  // five a field: low, high, not finite, and the range without hot spots
-  REQUIRE(bounds.size() >= 25);
+  INFO(numbers);  // seven a field: low, high, not finite, and the ranges without hot spots
+  REQUIRE(bounds.size() >= 35);
   double largest = 0;
   for (const double p : world.fields(built.value().bodies[0]).node_contact_pressure)
     largest = std::max(largest, p);
   REQUIRE(largest > 0);
-  CHECK(bounds[21] == Approx(largest).epsilon(1e-5));
+  CHECK(bounds[29] == Approx(largest).epsilon(1e-5));
+}
+
+TEST_CASE("fibers are drawn along their direction and go with their cells") {
+  for (const char* element : {"tet4", "hex8"}) {
+    SceneDef scene =
+        test::small_scene({std::string("bodies[0].element=") + element,
+                           std::string("bodies[0].mesh.box.cell_type=") + element, "metrics=[]"});
+    SceneFibers fibers;
+    fibers.direction = {0, 3, 0};
+    fibers.k1 = 10;
+    scene.bodies[0].materials[0].fibers = {fibers};
+    auto built = build(scene, {1});
+    INFO((built ? std::string() : built.error()));
+    REQUIRE(built.ok());
+    RunResult result;
+    result.records.resize(1);
+    const RunView view{scene, built.value(), result};
+    const PageShape shape(view);
+    CHECK(shape.has_fibers());
+    const PageFrame before = shape.frame(view, {});
+    REQUIRE(before.fibers.size() >= 2);
+    for (std::size_t i = 0; i < before.fibers.size(); i += 2) {
+      const Vec3 d = before.fibers[i + 1] - before.fibers[i];
+      CHECK(d.y > 0);
+      CHECK(std::abs(d.x) + std::abs(d.z) < 1e-12);
+      for (const Vec3& p : {before.fibers[i], before.fibers[i + 1]})
+        CHECK((p.x > -0.1 && p.x < 2.1 && p.z > -0.1 && p.z < 1.1));
+    }
+    for (int i = 0; i < 3; ++i) REQUIRE(built.value().world.advance(1.0 / 3).status == StepStatus::converged);
+    const PageFrame after = shape.frame(view, {});
+    REQUIRE(after.fibers.size() == before.fibers.size());
+    // Pulled along x, the block gets thinner along y.
+    double long_before = 0, long_after = 0;
+    for (std::size_t i = 0; i < after.fibers.size(); i += 2) {
+      const auto length = [i](const PageFrame& f) {
+        const Vec3 d = f.fibers[i + 1] - f.fibers[i];
+        return std::sqrt(dot(d, d));
+      };
+      long_before += length(before);
+      long_after += length(after);
+    }
+    CHECK(long_after < 0.99 * long_before);
+  }
 }

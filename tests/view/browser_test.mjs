@@ -1,5 +1,5 @@
 // Opens the demo pages in a real browser and looks at the pixels.
-// Usage: node browser_test.mjs PATH_OF_isochor_demo_page      (exit code 77: skipped)
+// Usage: node browser_test.mjs PATH_OF_isochor_demo_page [PART OF THE NAME OF A TEST]      (exit code 77: skipped)
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
@@ -34,7 +34,7 @@ function make(variant) {
   return path;
 }
 
-const files = Object.fromEntries(['', 'broken', 'single', 'bare', 'hot'].map((v) => [v || 'full', make(v)]));
+const files = Object.fromEntries(['', 'broken', 'single', 'bare', 'hot', 'parts'].map((v) => [v || 'full', make(v)]));
 const browser = await Browser.launch();
 
 async function open(file, hash = '', window = {}) {
@@ -319,15 +319,16 @@ const tests = {
     assert.ok((await pixels(single)).covered > 0);
     await finish(single);
     const bare = await open('bare', 'field=nonsense');
-    assert.match(await bare.evaluate(`document.querySelector('.notes').textContent`), /no field "nonsense"; it has displacement, solid/);
+    assert.match(await bare.evaluate(`document.querySelector('.notes').textContent`), /no field "nonsense"; it has displacement, relative, solid/);
     await finish(bare);
   },
 
   async 'what cannot be had is refused with what there is'() {
     const out = join(folder, 'refused.png');
-    for (const [wrong, says] of [['field=nonsense', /no field "nonsense"; it has pressure, stress, J, region, displacement, solid/],
+    for (const [wrong, says] of [['field=nonsense', /no field "nonsense"; it has pressure, stress, J, region, displacement, relative, solid/],
       ['colour=red', /no option "colour"; there are .*field, .*theme/], ['frame=99', /frames 0 to 20/], ['frame=end', /frame wants first, last/],
-      ['view=above', /view wants iso, front/], ['cut=w', /cut wants x, y, z or auto/], ['cut=x:7', /place from 0 to 1/],
+      ['view=above', /view wants iso, front/], ['cut=w', /cut wants x, y, z, auto or AROUND\/UP/], ['cut=30/:0.5', /AROUND\/UP/], ['camera=1,2,3', /camera wants six numbers/],
+      ['hide=table', /hide wants numbers of parts/], ['arrows=none', /arrows wants forces, fibers/], ['span=95', /span wants all, 98 or 90/], ['cut=x:7', /place from 0 to 1/],
       ['range=9,1', /range wants LOW,HIGH or frame/], ['zoom=0', /zoom wants a positive number/], ['theme=pink', /light or dark/], ['ghost=yes', /0 or 1/]]) {
       const run = spawnSync(process.execPath, [join(viewer, 'shoot.mjs'), files.full, out, wrong], { encoding: 'utf8' });
       assert.equal(run.status, 2, wrong);
@@ -346,13 +347,246 @@ const tests = {
     const usual = await range();
     assert.ok(usual[1] < 2e5, `up to ${usual[1]} Pa beside a hot spot of 1e7 Pa`);
     assert.match(await legend(), /1 % to 99 % of the points; all: .* to 10000/);
-    await page.evaluate(`[...document.querySelectorAll('.toggle')].find((t) => /Full range/.test(t.textContent)).querySelector('input').click()`);
+    await page.evaluate(`isochorViewer.controls.shares.node.children[2].click()`);
+    assert.match(await legend(), /5 % to 95 % of the points/);
+    assert.ok((await range())[1] < usual[1]);
+    await page.evaluate(`isochorViewer.controls.shares.node.children[0].click()`);
     assert.equal(Math.round((await range())[1]), 1e7);
     assert.doesNotMatch(await legend(), /99 %/);
     await finish(page);
     const full = await open('hot', 'field=stress&frame=10&full=1');
     assert.equal(Math.round((await full.evaluate('isochorViewer.currentRange()'))[1]), 1e7);
     await finish(full);
+  },
+
+  async 'colors around a center span less of the values'() {
+    const page = await open('hot', 'field=pressure&frame=10');
+    assert.equal(await page.evaluate('isochorViewer.share'), 0.9);
+    assert.equal(await page.evaluate(`isochorViewer.controls.shares.node.children[2].getAttribute('aria-pressed')`), 'true');
+    const [range, ends] = await page.evaluate(`(() => {
+      const v = isochorViewer, values = [...v.run.values(v.frame, v.state.field)].filter(Number.isFinite).sort((a, b) => a - b);
+      const at = (t) => values[Math.floor(t * (values.length - 1))];
+      return [v.run.frameRange(v.state.field, 10, v.share), [at(0.05), at(0.95)]];
+    })()`);
+    const reach = Math.max(...range.map(Math.abs));
+    range.forEach((v, k) => assert.ok(Math.abs(v - ends[k]) < 0.05 * reach, `${range} beside ${ends}`));
+    await finish(page);
+    const all = await open('hot', 'field=pressure&frame=10&span=all');
+    assert.equal(await all.evaluate('isochorViewer.share'), 1);
+    await finish(all);
+    const plain = await open('hot', 'field=stress&frame=10');
+    assert.equal(await plain.evaluate('isochorViewer.share'), 0.98);
+    await finish(plain);
+  },
+
+  async 'a cut may face any way'() {
+    const page = await open('full', 'field=stress&frame=10&cut=+90/0:0.5');
+    const free = await pixels(page);
+    assert.deepEqual(await page.evaluate('[isochorViewer.problems, isochorViewer.state.cut.axis]'), [[], 'free']);
+    await page.evaluate(`isochorViewer.controls.setCut('y')`);
+    await page.evaluate(`isochorViewer.state.cut.at = 0.5, isochorViewer.state.cut.flip = false, isochorViewer.controls.cutChanged()`);
+    assert.equal((await pixels(page)).hash, free.hash, '90 degrees around is across y');
+    // Across the line of sight: what is left is behind the plane through the middle.
+    await page.key('v');
+    const depth = await page.evaluate(`(() => {
+      const v = isochorViewer, { stage } = v, plane = v.cutPlane();
+      const sight = stage.camera.position.clone().sub(stage.controls.target).normalize().toArray();
+      return sight.reduce((sum, s, k) => sum + s * plane[k], 0);
+    })()`);
+    assert.ok(depth > 0.9995, `the plane faces the camera: ${depth}`);
+    const facing = await pixels(page);
+    assert.notEqual(facing.hash, free.hash);
+    assert.ok(facing.yellow > 0.02 * facing.covered, `${facing.yellow} yellow of ${facing.covered} pixels: the inner wall is to be seen`);
+    await page.evaluate(`{ const { slider } = isochorViewer.controls.angleRows[0]; slider.value = Number(slider.value) + 40; slider.dispatchEvent(new Event('input')); }`);
+    assert.notEqual((await pixels(page)).hash, facing.hash);
+    assert.match(await page.evaluate(`isochorViewer.controls.angles.textContent`), /around.*°.*up.*°/);
+    await finish(page);
+  },
+
+  async 'bodies are faded and hidden, and what is behind them is seen and touched'() {
+    const page = await open('parts', 'field=solid&frame=first&view=-100,10');
+    const whole = await pixels(page);
+    const look = (part, k) => page.evaluate(`isochorViewer.controls.lookChoices[${part}].node.children[${k}].click()`);
+    const under = (part) => page.evaluate(`(() => {
+      const { stage, run } = isochorViewer;
+      const corners = [...run.triangles].filter((_, c) => run.trianglePart[Math.floor(c / 3)] === ${part});
+      const p = stage.camera.position.clone().set(0, 0, 0);
+      for (const v of corners) p.add({ x: run.rest[3 * v] / corners.length, y: run.rest[3 * v + 1] / corners.length, z: run.rest[3 * v + 2] / corners.length });
+      p.project(stage.camera);
+      const { left, top, width, height } = stage.canvas.getBoundingClientRect();
+      const hit = isochorViewer.pickAt({ clientX: left + (p.x + 1) / 2 * width, clientY: top + (1 - p.y) / 2 * height });
+      return hit ? run.trianglePart[hit.triangle] : null;
+    })()`);
+    assert.equal(await under(1), 1);
+    await look(1, 2);
+    const hidden = await pixels(page);
+    assert.notEqual(await under(1), 1, 'what is hidden is not there for the hand');
+    assert.ok(hidden.covered < whole.covered, `${hidden.covered} of ${whole.covered} pixels`);
+    await look(1, 1);
+    const faded = await pixels(page);
+    assert.notEqual(await under(1), 1, 'nor what is looked through');
+    assert.ok(new Set([whole.hash, hidden.hash, faded.hash]).size === 3);
+    await page.key('y');
+    await pixels(page);
+    assert.equal(await page.evaluate(`isochorViewer.stage.body.capMaterials.find((c) => c.part === 1).meshes.some((m) => m.visible)`), false, 'a faded body has no fill');
+    await page.key('y');
+    await look(1, 0);
+    assert.equal((await pixels(page)).hash, whole.hash, 'shown again as it was');
+    await finish(page);
+    const other = await open('parts', 'field=solid&frame=first&view=-100,10&hide=1');
+    assert.equal((await pixels(other)).hash, hidden.hash, 'the address hides as well');
+    await finish(other);
+  },
+
+  async 'arrows of forces and lines of fibers'() {
+    const page = await open('parts', 'field=solid&frame=10');
+    const bare = await pixels(page);
+    await page.key('a');
+    const forces = await pixels(page);
+    assert.notEqual(forces.hash, bare.hash);
+    assert.match(await page.evaluate(`document.querySelector('.arrow-key').textContent`), /contact forces, up to 2 N.*friction/);
+    assert.deepEqual(await page.evaluate(`(({ normal, friction }) => [normal.geometry.instanceCount, friction.geometry.instanceCount])(isochorViewer.stage.overlays.arrows)`), [3, 3]);
+    // From its point along the force, as long as all arrows may be where it is the largest of the run.
+    const along = await page.evaluate(`[...isochorViewer.stage.overlays.arrows.normal.geometry.attributes.along.array.slice(0, 3)]`);
+    assert.ok(along[0] < -0.3 && Math.hypot(along[1], along[2]) < 1e-6, `${along}`);
+    await page.evaluate(`isochorViewer.go(0)`);
+    await page.waitFor('isochorViewer.frame.index === 0');
+    assert.equal(await page.evaluate(`isochorViewer.stage.overlays.arrows.normal.geometry.instanceCount`), 0, 'no force, no arrow');
+    await page.evaluate(`isochorViewer.go(10)`);
+    await page.waitFor('isochorViewer.frame.index === 10');
+    await page.key('a');
+    assert.equal((await pixels(page)).hash, bare.hash);
+    await page.evaluate(`isochorViewer.controls.fibers.input.click()`);
+    assert.notEqual((await pixels(page)).hash, bare.hash);
+    assert.equal(await page.evaluate(`isochorViewer.stage.overlays.arrows.lines.geometry.getAttribute('instanceStart').count`), 20);
+    await finish(page);
+    const none = await open('full');
+    assert.doesNotMatch(await none.evaluate(`document.querySelector('.controls').textContent`), /Contact forces|Fibers|Bodies/, 'nothing is offered that there is not');
+    await finish(none);
+  },
+
+  async 'the value under the cursor'() {
+    const page = await open('full', 'field=stress&frame=10');
+    const { x, y } = await page.evaluate(`(() => {
+      const { left, top, width, height } = isochorViewer.stage.canvas.getBoundingClientRect();
+      for (let r = 0; r < 200; r += 4) for (let k = 0; k < 12; ++k) {
+        const x = Math.round(left + width / 2 + r * Math.cos(k)), y = Math.round(top + height / 2 + r * Math.sin(k));
+        const there = [[0, 0], [3, 0], [-3, 0], [0, 3], [0, -3]].every(([dx, dy]) => isochorViewer.pickAt({ clientX: x + dx, clientY: y + dy }));
+        if (there) return { x, y };
+      }
+      return null;
+    })()`);
+    const says = `document.querySelector('.under-cursor:not([hidden])')?.textContent`;
+    await page.send('Input.dispatchMouseEvent', { type: 'mouseMoved', x, y });
+    await page.waitFor(`/^[\\d.]+ kPa$/.test(${says})`);
+    const [low, high] = await page.evaluate('isochorViewer.currentRange()');
+    const value = 1000 * parseFloat(await page.evaluate(says));
+    assert.ok(value >= 0.5 * low && value <= 1.5 * high, `${value} of ${low} to ${high}`);
+    await page.send('Input.dispatchMouseEvent', { type: 'mouseMoved', x: 3, y: 3 });
+    await page.waitFor(`${says} === undefined`);
+    await finish(page);
+  },
+
+  async 'labels keep apart'() {
+    const page = await open('parts', 'frame=10');
+    const boxes = await page.evaluate(`(() => {
+      isochorViewer.stage.draw();
+      return [...document.querySelectorAll('.probe, .legend, .stamp')].filter((l) => !l.hidden).map((l) => { const { left, top, right, bottom } = l.getBoundingClientRect(); return { text: l.textContent, left, top, right, bottom }; });
+    })()`);
+    assert.equal(boxes.filter(({ text }) => /Tip|Root|eside|here/.test(text)).length, 5, 'all of them are there');
+    for (const a of boxes) {
+      for (const b of boxes) {
+        if (a === b) continue;
+        assert.ok(a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top, `"${a.text}" lies over "${b.text}"`);
+      }
+    }
+    await finish(page);
+  },
+
+  async 'displacements less the common motion'() {
+    const page = await open('parts', 'field=relative&frame=10');
+    const seen = await page.evaluate(`(() => {
+      const v = isochorViewer, { run, frame } = v;
+      const values = run.values(frame, v.state.field);
+      const of = (part) => [...run.triangles].filter((_, c) => run.trianglePart[Math.floor(c / 3)] === part).map((n) => values[n]);
+      return { finger: Math.max(...of(0)), block: Math.max(...of(1)), table: Math.max(...of(2)), moved: run.head.frames[10].displacement, range: v.currentRange() };
+    })()`);
+    assert.ok(seen.block < 1e-5 && seen.table === 0, 'what only stands there has none');
+    assert.ok(seen.finger > 1e-3 && seen.finger < 0.8 * seen.moved, `${seen.finger} of ${seen.moved}`);
+    assert.equal(seen.range[0], 0);
+    assert.ok(seen.range[1] <= seen.finger * 1.001 && seen.range[1] > 0.3 * seen.finger);
+    // A turn and a shift alone leave nothing.
+    const left = await page.evaluate(`(() => {
+      const { run } = isochorViewer, n = run.rest.length, now = new Float32Array(n);
+      const [c, s] = [Math.cos(2), Math.sin(2)];
+      for (let i = 0; i < n; i += 3) {
+        now[i] = c * run.rest[i] - s * run.rest[i + 1] + 0.3;
+        now[i + 1] = s * run.rest[i] + c * run.rest[i + 1] - 0.1;
+        now[i + 2] = run.rest[i + 2] + 0.5;
+      }
+      const kept = { rest: run.rest, placed: run.placed, apart: run.apart };
+      run.placed = { index: -7, points: now };
+      const out = Math.max(...run.relative({ index: -7 }));
+      Object.assign(run, kept);
+      return out * run.scale;
+    })()`);
+    assert.ok(left < 1e-5, `${left} of a body of size 2`);
+    await finish(page);
+  },
+
+  async 'what stands near the ground is dark below, and folds are darker than the open'() {
+    const page = await open('parts', 'field=solid&frame=first&hide=0');
+    const at = await page.evaluate(`(() => {
+      isochorViewer.stage.draw();
+      const { ground, body, run } = { ...isochorViewer.stage, run: isochorViewer.run };
+      const shadow = (k, x, y) => { const s = ground.shadows[k], c = s.look.cells; const cell = (v) => Math.round((v / 3.2 + 0.5) * c - 0.5); return s.bytes[4 * (cell(y) * c + cell(x))]; };
+      const place = (p) => p.map((v, k) => (v - run.center[k]) * run.scale);
+      const [bx, by] = place([-0.035, 0, 0]), [fx, fy] = place([0.08, 0.05, 0]);
+      const shade = (wanted) => { const { source, part, attributes } = body.view.points; let worst = 0; source.forEach((v, i) => { if (part[i] === 1 && wanted(run.rest[3 * v + 2], i)) worst = Math.max(worst, attributes.shade.array[i]); }); return worst; };
+      const low = place([0, 0, -0.016])[2], high = place([0, 0, 0.03])[2];
+      return { below: shadow(1, bx, by), free: shadow(1, fx, fy), foot: shade((z) => Math.abs(z - low) < 1e-3), top: shade((z) => Math.abs(z - high) < 1e-3) };
+    })()`);
+    assert.ok(at.below > 60 && at.free < 6, `shadow ${at.below} below the block, ${at.free} away from it`);
+    assert.ok(at.foot > 0.05 && at.foot > 3 * at.top, `${at.foot} of the light is missing at the foot, ${at.top} at the top`);
+    await finish(page);
+  },
+
+  async 'a picture and a film are saved, and a link restores the view'() {
+    const page = await open('parts', 'field=stress&frame=3');
+    await page.evaluate(`window.isochorSaved = []; HTMLAnchorElement.prototype.click = function () { isochorSaved.push(this.download); };`);
+    await page.key('p');
+    await page.waitFor('isochorViewer.saved > 5000');
+    if (await page.evaluate('isochorViewer.controls.filmButton.hidden')) console.log('    this browser records no WebM');
+    else {
+      await page.evaluate('isochorViewer.controls.filmButton.click()');
+      await page.waitFor('isochorViewer.filmed');
+      const film = await page.evaluate(`(async () => {
+        const head = new Uint8Array(await isochorViewer.filmed.arrayBuffer());
+        const video = document.createElement('video');
+        video.src = URL.createObjectURL(isochorViewer.filmed);
+        await new Promise((done, fail) => { video.onloadeddata = done; video.onerror = () => fail(new Error('no film')); });
+        return { magic: [...head.slice(0, 4)], size: head.length, width: video.videoWidth, stage: isochorViewer.stage.host.clientWidth, frame: isochorViewer.state.frame };
+      })()`);
+      assert.deepEqual(film.magic, [0x1a, 0x45, 0xdf, 0xa3]);
+      assert.ok(film.size > 3000 && Math.abs(film.width - film.stage) <= 1, JSON.stringify(film));
+      assert.equal(film.frame, 20, 'to the last frame');
+      assert.deepEqual((await page.evaluate('isochorSaved')).map((name) => name.split('.').at(-1)), ['png', 'webm']);
+    }
+    await page.evaluate(`isochorViewer.go(7)`);
+    await page.evaluate('isochorViewer.stage.turn(40, 10)');
+    await page.evaluate(`isochorViewer.controls.lookChoices[1].node.children[1].click()`);
+    await page.key('a');
+    await page.key('v');
+    await page.key('l');
+    await page.waitFor(`/camera=/.test(location.hash)`);
+    const [link, wanted] = [await page.evaluate('location.hash.slice(1)'), await pixels(page)];
+    await finish(page);
+    const other = await open('parts', link);
+    assert.deepEqual(await other.evaluate('[isochorViewer.state.frame, isochorViewer.state.looks, isochorViewer.state.arrows.forces, isochorViewer.state.cut.axis]'), [7, ['shown', 'faded', 'shown'], true, 'free']);
+    // The camera is rounded to five digits.
+    const drawn = await pixels(other);
+    assert.ok(Math.abs(drawn.covered - wanted.covered) < 0.01 * wanted.covered, `${drawn.covered} and ${wanted.covered} pixels`);
+    await finish(other);
   },
 
   async 'tables have the units of the charts'() {
@@ -394,7 +628,9 @@ const tests = {
 
 let failures = 0;
 try {
+  const only = process.argv[3];
   for (const [name, test] of Object.entries(tests)) {
+    if (only && !name.includes(only)) continue;
     try {
       await test();
       console.log(`ok      ${name}`);

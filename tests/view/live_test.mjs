@@ -3,7 +3,7 @@
 //   node live_test.mjs path/to/isochor
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { request } from 'node:http';
 import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
@@ -23,8 +23,11 @@ const MOVING = [...SMALL, '--threads', '1', '--set', 'analysis.type=dynamic', '-
 
 /** A server that runs until it is told to end. */
 class Live {
+  static all = [];
+
   static async start(...args) {
     const live = new Live();
+    Live.all.push(live);
     live.child = spawn(isochor, ['live', ...args, '--no-browser'], { stdio: ['ignore', 'pipe', 'pipe'] });
     live.err = '';
     live.child.stderr.on('data', (data) => { live.err += data; });
@@ -96,17 +99,33 @@ async function mouse(page, type, { x, y }, button = 'left') {
   await page.send('Input.dispatchMouseEvent', { type, x, y, button, buttons: type === 'mousePressed' || type === 'mouseMoved' ? 1 : 0, clickCount: 1 });
 }
 
-/** Somewhere within a few pixels the body is hit. */
+/**
+ * A pixel near a point where the body is hit, and so are the pixels around it: what is given to the browser may be rounded,
+ * and an edge of the body must not lie between. Of a world that rests.
+ */
 async function hitNear(page, at) {
-  return page.evaluate(`(async () => {
-    const { stage, run } = isochorLive;
-    const hand = isochorLive.hand;
-    for (let r = 0; r < 40; r += 2) for (let k = 0; k < 12; ++k) {
-      const x = ${at.x} + r * Math.cos(k), y = ${at.y} + r * Math.sin(k);
-      if (isochorLive.pickAt({ clientX: x, clientY: y })) return { x, y };
+  const found = await page.evaluate(`(() => {
+    const { canvas } = isochorLive.stage;
+    const hit = (x, y) => document.elementFromPoint(x, y) === canvas && isochorLive.pickAt({ clientX: x, clientY: y }) !== null;
+    for (let r = 0; r < 120; r += 2) for (let k = 0; k < 24; ++k) {
+      const x = Math.round(${at.x} + r * Math.cos(k * Math.PI / 12)), y = Math.round(${at.y} + r * Math.sin(k * Math.PI / 12));
+      if ([[0, 0], [2, 0], [-2, 0], [0, 2], [0, -2], [2, 2], [-2, -2], [2, -2], [-2, 2]].every(([dx, dy]) => hit(x + dx, y + dy))) return { x, y };
     }
     return null;
   })()`);
+  assert.ok(found, 'the body is in the picture');
+  return found;
+}
+
+/** Stopped at its beginning, where it is the same however fast the machine is. */
+async function rest(page) {
+  await page.evaluate(`(async () => { for (const what of ['pause', 'reset']) await isochorLive.send({ do: what }); })()`);
+  await page.waitFor('!isochorLive.frame.info.playing && isochorLive.frame.info.step === 0 && isochorLive.frame.info.handles.length === 0');
+}
+
+async function play(page, on) {
+  await page.evaluate(`isochorLive.send({ do: '${on ? 'play' : 'pause'}' })`);
+  await page.waitFor(`isochorLive.frame.info.playing === ${on}`);
 }
 
 async function finish(page) {
@@ -164,23 +183,18 @@ const tests = {
 
   async 'a point is pulled, shows its force, and is let go; a pin stays'() {
     const page = await viewShared();
-    const play = async (on) => {
-      await page.evaluate(`isochorLive.send({ do: '${on ? 'play' : 'pause'}' })`);
-      await page.waitFor(`isochorLive.frame.info.playing === ${on}`);
-    };
-    await play(false); // what rests is hit
+    await rest(page); // what rests is hit
     const from = await hitNear(page, await page.evaluate(ON_BODY));
-    assert.ok(from, 'the body is in the picture');
     await mouse(page, 'mousePressed', from);
     await page.waitFor('isochorLive.frame.info.handles.length === 1');
-    await play(true);
+    await play(page, true);
     for (const d of [10, 25, 40]) await mouse(page, 'mouseMoved', { x: from.x, y: from.y + d });
     await page.waitFor('isochorLive.frame.info.handles[0]?.force > 1e-3');
     await page.waitFor(`/\\d N|mN/.test(document.querySelector('.hand text')?.textContent ?? '')`);
     await mouse(page, 'mouseReleased', { x: from.x, y: from.y + 40 });
     await page.waitFor('isochorLive.frame.info.handles.length === 0');
     await page.key('2');
-    await play(false);
+    await rest(page);
     const again = await hitNear(page, await page.evaluate(ON_BODY));
     await mouse(page, 'mousePressed', again);
     await mouse(page, 'mouseReleased', again);
@@ -203,8 +217,8 @@ const tests = {
     await page.waitFor(`isochorLive.frame.field === isochorLive.state.field.name || isochorLive.state.field.kind !== 'given'`);
     await page.evaluate(`{ const { fieldSelect } = isochorLive.controls; fieldSelect.value = isochorLive.fields.findIndex((f) => f.name === 'pressure'); fieldSelect.dispatchEvent(new Event('change')); }`);
     await page.waitFor(`isochorLive.frame.field === 'pressure' && /Mean stress/.test(document.querySelector('.legend').textContent)`);
-    await press(page, 'playButton'); // what rests stays under the cursor
-    await page.waitFor('!isochorLive.frame.info.playing');
+    await rest(page); // what rests stays under the cursor
+    await page.waitFor(`isochorLive.frame.field === 'pressure'`);
     const at = await hitNear(page, await page.evaluate(ON_BODY));
     await page.send('Input.dispatchMouseEvent', { type: 'mouseMoved', x: at.x, y: at.y });
     await page.waitFor(`/Pa$/.test(document.querySelector('.under-cursor:not([hidden])')?.textContent ?? '')`);
@@ -223,6 +237,96 @@ const tests = {
     camera.forEach((v, i) => assert.ok(Math.abs(v - there[i]) < 1e-3));
     assert.deepEqual(await other.evaluate('[isochorLive.state.field.name, isochorLive.state.edges]'), ['pressure', true]);
     await finish(other);
+  },
+
+  async 'obstacles and supports are moved, arrows drawn, bodies faded, any way cut, and the link restores it'() {
+    const file = join(folder, 'two.json');
+    const block = (name, x) => ({ name, mesh: { box: { lower: [x, 0, 0], upper: [x + 2, 1, 1], divisions: [4, 2, 2] } },
+      materials: [{ young: 1000, poisson: 0.45, fibers: [{ direction: [1, 0, 1], k1: 10 }] }] });
+    writeFileSync(file, JSON.stringify({
+      name: 'two', bodies: [block('left', 0), block('right', 3)], analysis: { steps: 2 },
+      dirichlet: [{ name: 'wall', where: { body: 'left', surfaces: 'x0' } }, { name: 'end', where: { body: 'right', surfaces: 'x1' } }],
+      tractions: [{ name: 'weight', body: 'left', surface: 'x1', traction: [0, 0, -15] }],
+      contacts: [{ name: 'table', body: 'left', obstacle: { position: [1, 0.5, -0.02] }, friction: 0.3 }],
+    }));
+    const live = await Live.start(file);
+    const page = await view(live);
+    await page.waitFor('isochorLive.frame.info.settled');
+    const group = (name) => `isochorLive.controls.dials.rows.filter((row) => row.dial.group === 'Pose of ${name}')`;
+    assert.deepEqual(await page.evaluate(`${group('obstacle of table')}.map((row) => row.dial.name + ' ' + row.unit)`),
+      ['along x m', 'along y m', 'along z m', 'turned about x °', 'turned about y °', 'turned about z °']);
+    const middle = (part) => page.evaluate(`(() => {
+      const { run, frame } = isochorLive, seen = new Set();
+      run.triangles.forEach((v, c) => { if (run.trianglePart[Math.floor(c / 3)] === ${part}) seen.add(v); });
+      return [0, 1, 2].map((k) => [...seen].reduce((sum, v) => sum + frame.positions[3 * v + k], 0) / seen.size / run.scale);
+    })()`);
+    const set = async (name, k, value) => {
+      await page.evaluate(`{ const { number } = ${group(name)}[${k}]; number.value = ${value}; number.dispatchEvent(new Event('change')); }`);
+      await page.waitFor(`isochorLive.frame.info.dials[${group(name)}[${k}].index] === ${value} && isochorLive.frame.info.settled`);
+    };
+    // The table is raised and lifts the block, the other block is carried and turned.
+    const [table, left, right] = [await middle(2), await middle(0), await middle(1)];
+    await set('obstacle of table', 2, 0.3);
+    assert.ok(Math.abs((await middle(2))[2] - table[2] - 0.3) < 1e-3, 'the table is drawn where it is');
+    assert.ok((await middle(0))[2] > left[2] + 0.05, 'the block is lifted');
+    await set('support end', 1, 0.5);
+    const carried = await middle(1);
+    assert.ok(Math.abs(carried[1] - right[1] - 0.5) < 1e-3 && Math.abs(carried[0] - right[0]) < 1e-3, 'the other one is carried');
+    await set('support end', 4, 30);
+    const wanted = await page.evaluate(`(() => { const a = Math.PI / 6, [x, z] = [-1, 0]; return [5 + Math.cos(a) * x + Math.sin(a) * z, 0.5 + 0.5, 0.5 - Math.sin(a) * x + Math.cos(a) * z].map((v, k) => v - isochorLive.run.center[k]); })()`);
+    (await middle(1)).forEach((v, k) => assert.ok(Math.abs(v - wanted[k]) < 2e-3, `turned to ${v}, wanted ${wanted[k]}`));
+    // What is carried has hardly any displacement of its own.
+    await page.evaluate(`isochorLive.controls.chooseField(isochorLive.fields.find((f) => f.name === 'relative'))`);
+    const apart = await page.evaluate(`(() => { const v = isochorLive, { run, frame } = v, values = run.values(frame, v.state.field), most = [0, 0];
+      run.triangles.forEach((n, c) => { const p = run.trianglePart[Math.floor(c / 3)]; if (p < 2) most[p] = Math.max(most[p], values[n]); }); return most; })()`);
+    assert.ok(apart[1] < 1e-4 && apart[0] > 1e-3, `${apart}`);
+    // Arrows come when they are asked for.
+    assert.equal(await info(page, 'forces'), 0);
+    await page.key('a');
+    await page.waitFor('isochorLive.frame.info.forces > 0 && isochorLive.stage.overlays.arrows.normal.geometry.instanceCount > 0');
+    assert.match(await page.evaluate(`document.querySelector('.arrow-key').textContent`), /contact forces, up to [\d.]+ m?N/);
+    assert.equal(await info(page, 'fibers'), 0);
+    await page.evaluate('isochorLive.controls.fibers.input.click()');
+    await page.waitFor('isochorLive.frame.info.fibers > 0 && isochorLive.stage.overlays.arrows.lines.visible');
+    // Faded: seen through, and no longer for the hand.
+    await page.key('r');
+    const at = await page.evaluate(ON_BODY);
+    const spot = await hitNear(page, at);
+    await page.evaluate(`isochorLive.controls.lookChoices[1].node.children[1].click()`);
+    assert.notEqual(await page.evaluate(`(() => { const hit = isochorLive.pickAt({ clientX: ${spot.x}, clientY: ${spot.y} }); return hit && isochorLive.run.trianglePart[hit.triangle]; })()`), 1);
+    await page.key('v');
+    await page.evaluate('isochorLive.stage.turn(35, -8)');
+    await page.key('l');
+    await page.waitFor(`/camera=/.test(location.hash)`);
+    const link = await page.evaluate('location.href');
+    const shown = '[isochorLive.state.field.name, isochorLive.state.looks, isochorLive.state.arrows, isochorLive.state.cut.axis, isochorLive.cutPlane().map((v) => v.toFixed(3))]';
+    const before = await page.evaluate(shown);
+    assert.equal(before[3], 'free');
+    await finish(page);
+    const other = await browser.open(link);
+    await other.waitFor('window.isochorLive?.stage.opened && isochorLive.frame.info.forces > 0 && isochorLive.frame.info.fibers > 0');
+    assert.deepEqual(await other.evaluate(shown), before);
+    await finish(other);
+    assert.deepEqual(await live.end(), { code: 0, signal: null });
+  },
+
+  async 'a film of what moves'() {
+    const page = await viewShared();
+    await page.evaluate('HTMLAnchorElement.prototype.click = function () { window.isochorSaved = this.download; }, true');
+    if (await page.evaluate('isochorLive.controls.filmButton.hidden')) console.log('        this browser records no WebM');
+    else {
+      await press(page, 'filmButton');
+      await page.waitFor('isochorLive.video.pictures > 5');
+      assert.equal(await page.evaluate('isochorLive.controls.filmButton.textContent'), 'End video');
+      await press(page, 'filmButton');
+      await page.waitFor('isochorLive.filmed');
+      const film = await page.evaluate(`(async () => { const bytes = new Uint8Array(await isochorLive.filmed.arrayBuffer()); return { magic: [...bytes.slice(0, 4)], size: bytes.length }; })()`);
+      assert.deepEqual(film.magic, [0x1a, 0x45, 0xdf, 0xa3]);
+      assert.ok(film.size > 3000);
+      assert.match(await page.evaluate('isochorSaved'), /^finger_\d+\.webm$/);
+      assert.equal(await page.evaluate('isochorLive.stage.onDrawn'), null, 'nothing goes on');
+    }
+    await finish(page);
   },
 
   async 'of two viewers one drives, and the other may take over'() {
@@ -387,16 +491,31 @@ const tests = {
     const page = await viewShared({ width: 390, height: 800, dark: true });
     assert.ok(await page.evaluate('document.documentElement.scrollWidth <= window.innerWidth'), 'the page is wider than the window');
     await page.evaluate(`isochorLive.page.stage.scrollIntoView()`);
-    await page.evaluate(`isochorLive.send({ do: 'pause' })`);
-    await page.waitFor('!isochorLive.frame.info.playing');
+    await rest(page);
     const at = await hitNear(page, await page.evaluate(ON_BODY));
     await page.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [at] });
     await page.waitFor('isochorLive.frame.info.handles.length === 1');
-    await page.evaluate(`isochorLive.send({ do: 'play' })`);
+    await play(page, true);
     for (const d of [8, 20, 30]) await page.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: [{ x: at.x, y: at.y + d }] });
     await page.waitFor('isochorLive.frame.info.handles[0]?.force > 1e-3');
     await page.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
     await page.waitFor('isochorLive.frame.info.handles.length === 0');
+    // Two fingers zoom, wherever they are put down, and take hold of nothing.
+    await page.key('4');
+    const far = () => page.evaluate('isochorLive.stage.camera.position.distanceTo(isochorLive.stage.controls.target)');
+    const before = await far();
+    const { x, y } = await page.evaluate(`(({ x, y, width, height }) => ({ x: x + width / 2, y: y + height / 2 }))(isochorLive.stage.canvas.getBoundingClientRect())`);
+    const fingers = (type, d) => page.send('Input.dispatchTouchEvent', { type, touchPoints: type === 'touchEnd' ? [] : [{ x: x - d, y, id: 0 }, { x: x + d, y, id: 1 }] });
+    await fingers('touchStart', 20);
+    for (const d of [30, 45, 60]) await fingers('touchMove', d);
+    await fingers('touchEnd', 0);
+    assert.ok(await far() < 0.8 * before, 'the camera has come nearer');
+    assert.equal(await info(page, 'handles.length'), 0);
+    // Dark by the system, light by the button.
+    const dark = () => page.evaluate(`getComputedStyle(document.documentElement).getPropertyValue('--dark').trim()`);
+    assert.equal(await dark(), '1');
+    await page.evaluate(`isochorLive.page.theme.click()`);
+    assert.equal(await dark(), '0');
     await finish(page);
   },
 };
@@ -421,7 +540,7 @@ try {
     console.log(`FAILED  the server ends with ${JSON.stringify(ended)}: ${shared.err}`);
   }
 } finally {
-  shared.child.kill('SIGKILL');
+  for (const { child } of Live.all) child.kill('SIGKILL'); // where a test has failed before its end
   await browser.close();
   rmSync(folder, { recursive: true, force: true });
 }

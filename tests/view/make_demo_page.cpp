@@ -3,7 +3,7 @@
 // it. ACROSS and ALONG are cells over an end and along the straight part (10 and 16): the surface has
 // 8 ACROSS (3 ACROSS + 2 ALONG) triangles, the body 4.5 times as many tets.
 //
-//   make_demo_page OUT.html [full|broken|single|bare|hot [ACROSS ALONG FRAMES]]
+//   make_demo_page OUT.html [full|broken|single|bare|hot|parts [ACROSS ALONG FRAMES]]
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -127,6 +127,39 @@ Vec3 moved(const Vec3& rest, double load) {
           reach * std::sin(angle) + beyond * std::cos(angle)};
 }
 
+// A second body beside the finger, and a table below both.
+void add_block_and_table(isochor::PageScene& scene) {
+  const auto box = [&](const Vec3& low, const Vec3& high, const isochor::PagePart& part) {
+    const auto first = static_cast<Index>(scene.rest.size()), number = static_cast<Index>(scene.parts.size());
+    scene.parts.push_back(part);
+    for (int k = 0; k < 8; ++k)
+      scene.rest.push_back({k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z});
+    for (const Index i : {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                          2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5})
+      scene.triangles.push_back(first + i);
+    scene.triangle_part.resize(scene.triangles.size() / 3, number);
+    scene.triangle_edges.resize(scene.triangles.size() / 3, 7);
+  };
+  box({-0.05, -0.02, -0.016}, {-0.02, 0.02, 0.03}, {"Block", ""});
+  box({-0.08, -0.06, -0.018}, {0.1, 0.06, -0.016}, {"Table", "", true});
+  scene.probes = {"Tip", "Root", "Beside the root", "Also beside it", "And here"};
+}
+
+// Those two stay where they are.
+Vec3 moved_part(const Vec3& rest, double load) {
+  return rest.x <= -0.02 || rest.z <= -0.016 ? rest : moved(rest, load);
+}
+
+void add_arrows(isochor::PageFrame& frame, double load) {
+  frame.probes.resize(2);
+  for (const double d : {1.0, 2.0, 3.0}) frame.probes.push_back(frame.probes[1] + Vec3{1e-4 * d, 0, 0});
+  for (const double y : {-0.01, 0.0, 0.01})
+    frame.forces.push_back({{-0.02, y, 0.01}, {-2 * load, 0, 0}, {0, 0, 0.7 * load}});
+  for (int k = 0; k < 20; ++k)
+    frame.fibers.insert(frame.fibers.end(),
+                        {moved({outer, 0, 0.003 * k}, load), moved({outer, 0, 0.003 * k + 0.002}, load)});
+}
+
 struct Values {
   double pressure, stress, volume_ratio;
 };
@@ -189,8 +222,8 @@ isochor::PageReport report(int frames) {
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fprintf(stderr,
-                 "usage: make_demo_page OUT.html [full|broken|single|bare|hot [ACROSS ALONG FRAMES]]\n");
+    std::fprintf(
+        stderr, "usage: make_demo_page OUT.html [full|broken|single|bare|hot|parts [ACROSS ALONG FRAMES]]\n");
     return 2;
   }
   const std::string_view variant = argc > 2 ? argv[2] : "full";
@@ -201,7 +234,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "make_demo_page: ACROSS is even and at least 2, ALONG and FRAMES are at least 1\n");
     return 2;
   }
-  const bool bare = variant == "bare", broken = variant == "broken", hot = variant == "hot";
+  const bool bare = variant == "bare", broken = variant == "broken", hot = variant == "hot",
+             parts = variant == "parts";
 
   isochor::PageScene scene;
   const Mesh mesh = capsule(across, along);
@@ -214,6 +248,7 @@ int main(int argc, char** argv) {
     scene.lines = {{"Tendon", "#d8a11d"}};
     scene.probes = {"Tip", "Root"};
   }
+  if (parts) add_block_and_table(scene);
   auto recorder = isochor::ResultsRecorder::start(scene);
   if (!recorder) {
     std::fprintf(stderr, "%s\n", recorder.error().c_str());
@@ -226,7 +261,7 @@ int main(int argc, char** argv) {
     frame.label = frame.time < 1 ? "inflating" : "releasing";
     frame.fields.resize(scene.fields.size());
     for (const Vec3& rest : scene.rest) {
-      frame.positions.push_back(moved(rest, load));
+      frame.positions.push_back(parts ? moved_part(rest, load) : moved(rest, load));
       if (bare) continue;
       const Values v = values_at(rest, load);
       frame.fields[0].push_back(v.pressure);
@@ -249,6 +284,7 @@ int main(int argc, char** argv) {
       }
       if (broken && i == 5) frame.positions[7].x = std::numeric_limits<double>::quiet_NaN();
     }
+    if (parts) add_arrows(frame, load);
     // A single point, as a sharp edge has it.
     if (hot) frame.fields[1][frame.fields[1].size() / 2] = load * 1e7;
     if (auto ok = recorder.value().append(frame); !ok) {

@@ -7,6 +7,7 @@ import { categoryColor, colorTable, partColor } from './colors.js';
 import {
   bodyFragment, bodyVertex, capFragment, ghostFragment, ghostVertex, plainVertex, stencilFragment,
 } from './shaders.js';
+import { Occlusion } from './occlusion.js';
 import { buildTopology, faceNormals, groupNormals, hollows, sliceCells, sliceSurface } from './topology.js';
 
 const GRAY = [143, 143, 143];
@@ -32,6 +33,7 @@ class Points {
       value: attribute(new Float32Array(count), 1),
       valid: attribute(new Float32Array(count).fill(1), 1),
       solid: attribute(new Float32Array(count * 3), 3),
+      shade: attribute(new Float32Array(count), 1),
     };
   }
 
@@ -85,6 +87,7 @@ export class Body {
     const { triangles, trianglePart, rest } = run;
     this.parts = run.head.parts;
     this.colors = this.parts.map(partColor);
+    this.looks = this.parts.map(() => 'shown');
     this.topology = buildTopology(rest, triangles, trianglePart, this.parts.length);
     this.hollow = hollows(rest, triangles, trianglePart, this.topology.closed);
     this.faces = new Float32Array(triangles.length);
@@ -99,6 +102,7 @@ export class Body {
     };
     this.shows = { field: false, categories: false, invalid: false, cut: false, edges: false, inside: false };
     this.buildShared();
+    this.occlusion = new Occlusion(run, (p) => this.parts[p].obstacle === true, (p) => this.looks[p] === 'shown');
     this.section = new THREE.Group();
     this.section.visible = false;
     this.ghost = new THREE.Group();
@@ -127,22 +131,71 @@ export class Body {
 
   /** A mesh for each kind of part, drawn from `points`; `vertex`: of a corner of a triangle. */
   buildMeshes(points, vertex, extra = {}) {
+    const view = { points, vertex, extra, meshes: [] };
+    this.fillMeshes(view);
+    return view;
+  }
+
+  fillMeshes(view) {
     const { closed } = this.topology;
-    const meshes = [];
-    for (const obstacle of [false, true]) {
-      for (const isClosed of [true, false]) {
-        const { corners, seen } = this.cornersWhere((p) => (this.parts[p].obstacle === true) === obstacle && closed[p] === isClosed);
-        if (corners.length === 0) continue;
-        const geometry = new THREE.BufferGeometry();
-        for (const [name, a] of Object.entries({ ...points.attributes, ...extra })) geometry.setAttribute(name, a);
-        geometry.setIndex(corners.map(vertex));
-        const material = new THREE.ShaderMaterial({
-          uniforms: this.uniforms, vertexShader: bodyVertex, fragmentShader: bodyFragment, side: THREE.DoubleSide,
-        });
-        meshes.push({ mesh: this.add(new THREE.Mesh(geometry, material), 1), obstacle, closed: isClosed, seen });
+    for (const look of ['shown', 'faded']) {
+      for (const obstacle of [false, true]) {
+        for (const isClosed of [true, false]) {
+          const { corners, seen } = this.cornersWhere((p) => this.looks[p] === look
+            && (this.parts[p].obstacle === true) === obstacle && closed[p] === isClosed);
+          if (corners.length === 0) continue;
+          const geometry = new THREE.BufferGeometry();
+          for (const [name, a] of Object.entries({ ...view.points.attributes, ...view.extra })) geometry.setAttribute(name, a);
+          geometry.setIndex(corners.map(view.vertex));
+          for (const pass of look === 'faded' ? ['depth', 'veil'] : ['solid']) {
+            const mesh = this.add(new THREE.Mesh(geometry, this.bodyMaterial(pass)), { solid: 1, depth: 350, veil: 351 }[pass]);
+            view.meshes.push({ mesh, obstacle, closed: isClosed, seen, faded: look === 'faded' });
+          }
+        }
       }
     }
-    return { points, meshes };
+  }
+
+  /** What is faded comes after everything else, its depth first: only its nearest layer is seen. */
+  bodyMaterial(pass) {
+    const base = { uniforms: this.uniforms, vertexShader: bodyVertex, fragmentShader: bodyFragment, side: THREE.DoubleSide };
+    if (pass === 'depth') return new THREE.ShaderMaterial({ ...base, transparent: true, colorWrite: false });
+    if (pass === 'veil') return new THREE.ShaderMaterial({ ...base, transparent: true, depthFunc: THREE.LessEqualDepth });
+    return new THREE.ShaderMaterial(base);
+  }
+
+  /** look: 'shown', 'faded' or 'hidden'. */
+  setLook(part, look) {
+    if (this.looks[part] === look) return;
+    this.looks[part] = look;
+    for (const view of this.views) {
+      for (const { mesh } of view.meshes) {
+        this.object.remove(mesh);
+        mesh.geometry.dispose();
+        mesh.material.dispose();
+      }
+      view.meshes = [];
+      this.fillMeshes(view);
+    }
+    this.occlusion = new Occlusion(this.run, (p) => this.parts[p].obstacle === true, (p) => this.looks[p] === 'shown');
+    this.shadedShape = null;
+    this.refresh();
+  }
+
+  /** Where little of the sky is seen, of the shape as it is now. */
+  shade() {
+    if (this.shadedShape === this.positions) return;
+    this.shadedShape = this.positions;
+    this.occlusion.setShape(this.positions);
+    this.shadeView();
+  }
+
+  shadeView() {
+    if (!this.shadedShape || !this.view) return;
+    const { source, normalSource, attributes: { shade } } = this.view.points;
+    this.occlusion.shade(this.positions, source, this.normals, normalSource, shade.array);
+    shade.needsUpdate = true;
+    this.shadedView = this.view;
   }
 
   /** Corners of one smooth group are one vertex: a sixth of the work of having each on its own. */
@@ -204,8 +257,7 @@ export class Body {
       geometry.setAttribute('position', this.shared.points.attributes.position);
       geometry.setIndex(this.cornersWhere((p) => p === index).corners.map((c) => group[c]));
       const order = 2 + index * 3;
-      this.add(new THREE.Mesh(geometry, back), order, this.section);
-      this.add(new THREE.Mesh(geometry, front), order + 0.5, this.section);
+      const counted = [this.add(new THREE.Mesh(geometry, back), order, this.section), this.add(new THREE.Mesh(geometry, front), order + 0.5, this.section)];
       const color = new THREE.Vector3(...this.colors[index]).multiplyScalar(1 / 255);
       const material = new THREE.ShaderMaterial({
         uniforms: { color: { value: new THREE.Vector3() }, pixel: this.uniforms.pixel },
@@ -215,8 +267,8 @@ export class Body {
         // Values inside, where the run has them, are drawn over this fill.
         polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 2,
       });
-      this.capMaterials.push({ material, color, obstacle: part.obstacle });
-      this.add(new THREE.Mesh(this.capGeometry, material), order + 0.75, this.section);
+      counted.push(this.add(new THREE.Mesh(this.capGeometry, material), order + 0.75, this.section));
+      this.capMaterials.push({ material, color, obstacle: part.obstacle, part: index, meshes: counted });
     });
     this.outline = new LineSegments2(new LineSegmentsGeometry(), new LineMaterial({
       color: 0x15181c, linewidth: 1.5, transparent: true, opacity: 0.8, depthWrite: false,
@@ -296,6 +348,7 @@ export class Body {
     const view = apart ? this.apart : this.shared;
     for (const v of this.views) for (const { mesh } of v.meshes) mesh.visible = v === view;
     this.view = view;
+    if (this.shadedView !== view) this.shadeView();
     const { points } = view;
     points.setShape(this.positions, this.normals);
     // The section is cut out of the shared points.
@@ -320,13 +373,13 @@ export class Body {
 
   refreshMaterials() {
     const { shows } = this;
-    for (const { mesh, obstacle, closed, seen } of this.view.meshes) {
+    for (const { mesh, obstacle, closed, seen, faded } of this.view.meshes) {
       const field = shows.field && !obstacle;
       // Backs and hollows of a closed surface are seen only through a cut or from within.
       const whole = closed && !shows.cut && !shows.inside;
       const side = whole ? THREE.FrontSide : THREE.DoubleSide;
       mesh.geometry.setDrawRange(0, whole ? seen : Infinity);
-      define(mesh.material, { FIELD: field, INVALID: field && shows.invalid, CUT: shows.cut, EDGES: shows.edges }, side);
+      define(mesh.material, { FIELD: field, INVALID: field && shows.invalid, CUT: shows.cut, EDGES: shows.edges, FADED: faded }, side);
     }
     if (this.slice) define(this.sliceMaterial, { FIELD: true, INVALID: true }, THREE.DoubleSide);
   }
@@ -352,12 +405,13 @@ export class Body {
     const [a, b, c, d] = [at(-1, -1), at(1, -1), at(1, 1), at(-1, 1)];
     this.capGeometry.attributes.position.array.set([...a, ...b, ...c, ...a, ...c, ...d]);
     this.capGeometry.attributes.position.needsUpdate = true;
-    for (const { material, color, obstacle } of this.capMaterials) {
+    for (const { material, color, obstacle, part, meshes } of this.capMaterials) {
+      for (const mesh of meshes) mesh.visible = this.looks[part] === 'shown';
       // Gray beside a field: a colored fill could be read as a value.
       const gray = shows.field && !obstacle;
       material.uniforms.color.value.set(...(gray ? [0.8, 0.81, 0.83] : color.toArray().map((c) => 0.25 + 0.72 * c)));
     }
-    const segments = sliceSurface(this.run.triangles, this.positions, plane);
+    const segments = sliceSurface(this.run.triangles, this.positions, plane, (f) => this.looks[this.run.trianglePart[f]] === 'shown');
     this.outline.visible = segments.length > 0;
     this.outline.geometry.dispose();
     this.outline.geometry = new LineSegmentsGeometry();
@@ -368,8 +422,27 @@ export class Body {
     if (this.slice.visible) this.fillSlice(plane);
   }
 
+  /** Cells of the parts that are shown; those inside belong to the part of their neighbors. */
+  cellsShown() {
+    const { cells, triangles, trianglePart } = this.run;
+    if (this.looks.every((look) => look === 'shown')) return cells;
+    if (!this.cellPart) {
+      const of = new Int32Array(this.run.rest.length / 3).fill(-1);
+      triangles.forEach((v, c) => { of[v] = trianglePart[Math.floor(c / 3)]; });
+      for (let spread = true; spread;) {
+        spread = false;
+        for (let c = 0; c < cells.length; c += 4) {
+          const known = Math.max(of[cells[c]], of[cells[c + 1]], of[cells[c + 2]], of[cells[c + 3]]);
+          for (let k = c; known >= 0 && k < c + 4; ++k) if (of[cells[k]] < 0) { of[cells[k]] = known; spread = true; }
+        }
+      }
+      this.cellPart = Int32Array.from({ length: cells.length / 4 }, (_, c) => of[cells[4 * c]]);
+    }
+    return cells.filter((_, k) => this.looks[this.cellPart[Math.floor(k / 4)]] === 'shown');
+  }
+
   fillSlice(plane) {
-    const { points, values } = sliceCells(this.run.cells, this.positions, this.vertexValues, plane);
+    const { points, values } = sliceCells(this.cellsShown(), this.positions, this.vertexValues, plane);
     const count = values.length;
     const normal = new Float32Array(count * 3);
     const valid = new Float32Array(count);

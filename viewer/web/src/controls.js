@@ -2,6 +2,8 @@
 import { DISPLAY_KEYS, DisplayPanel, helpOn, isOnButton, isOnSlider, isTyping } from './display_panel.js';
 import { el } from './dom.js';
 import { icon } from './layout.js';
+import { videoType } from './video.js';
+import { copyLink } from './view_link.js';
 
 export class Controls extends DisplayPanel {
   constructor(viewer) {
@@ -23,7 +25,12 @@ export class Controls extends DisplayPanel {
     this.counter = el('output', { class: 'counter' });
     const speed = el('select', { 'aria-label': 'Playback speed', onchange: () => { viewer.state.speed = Number(speed.value); if (viewer.state.playing) viewer.play(true); } },
       ...[[0.25, '¼×'], [0.5, '½×'], [1, '1×'], [2, '2×'], [4, '4×']].map(([v, text]) => el('option', { value: v, selected: v === 1 }, text)));
-    viewer.page.transport.append(this.playButton, step('back', 'Previous frame', -1), step('next', 'Next frame', 1), this.slider, this.counter, speed);
+    const button = (text, title, action) => el('button', { type: 'button', class: 'word', title, onclick: action }, text);
+    this.filmButton = button('Video', 'The run from its beginning as a film (WebM)', () => (viewer.video ? viewer.endFilm() : viewer.film()));
+    this.filmButton.hidden = !viewer.stage || videoType() === null || frames.length < 2;
+    const keep = viewer.stage ? [button('PNG', 'The picture as a file (P)', () => viewer.savePicture(viewer.pictureName)), this.filmButton,
+      button('Link', 'An address that shows this view (L)', () => copyLink(viewer))] : [];
+    viewer.page.transport.append(this.playButton, step('back', 'Previous frame', -1), step('next', 'Next frame', 1), this.slider, this.counter, speed, ...keep);
     viewer.page.transport.hidden = frames.length < 2;
     this.playingChanged();
   }
@@ -32,6 +39,12 @@ export class Controls extends DisplayPanel {
     const { playing } = this.viewer.state;
     this.playButton.replaceChildren(icon(playing ? 'pause' : 'play'));
     this.playButton.setAttribute('aria-label', playing ? 'Pause' : 'Play');
+  }
+
+  filmChanged() {
+    const on = Boolean(this.viewer.video);
+    this.filmButton.textContent = on ? 'Stop' : 'Video';
+    this.filmButton.classList.toggle('on', on);
   }
 
   frameShown() {
@@ -46,7 +59,7 @@ export class Controls extends DisplayPanel {
   buildPanel() {
     const { run, page, stage } = this.viewer;
     page.controls.append(...this.groups([['run', 'All frames'], ['frame', 'This frame'], ['custom', 'Custom']]),
-      helpOn([['Space', 'play or pause'], ['← →', 'previous, next frame'], ['Home End', 'first, last frame'], ...DISPLAY_KEYS]));
+      helpOn([['Space', 'play or pause'], ['← →', 'previous, next frame'], ['Home End', 'first, last frame'], ['P', 'picture'], ['L', 'link of the view'], ...DISPLAY_KEYS]));
     page.controls.hidden = !stage;
     this.rangeBox.hidden = run.frameCount === 0;
     this.showRange();
@@ -68,6 +81,10 @@ export class Controls extends DisplayPanel {
       event.preventDefault();
     } else if (event.key === 'Home' || event.key === 'End') {
       if (!onSlider) viewer.go(event.key === 'Home' ? 0 : viewer.run.frameCount - 1);
+    } else if (event.key === 'p') {
+      viewer.savePicture(viewer.pictureName);
+    } else if (event.key === 'l') {
+      copyLink(viewer);
     } else {
       this.displayKey(event);
     }

@@ -1,6 +1,8 @@
 // Reads what viewer/results_page.cpp wrote: a JSON head and one compressed block for the rest state and
 // for each frame. Frames are unpacked when first shown, so a long run opens as fast as a short one.
 
+import { RELATIVE, apartFromCommon, quantiles, verticesOfBodies } from './rigid.js';
+
 const INVALID_CODE = 65535; // a value that was NaN or infinite
 const FIELD_LEVELS = 4095;
 const AHEAD_BYTES = 100e6; // of frames unpacked before they are asked for
@@ -158,7 +160,10 @@ export class RunData {
     const lines = head.lines.map(() => this.worldPoints(reader.points()));
     const probes = this.worldPoints(reader.points());
     const contacts = this.worldPoints(reader.points());
-    return { index, info, codes, fields, lines, probes, contacts };
+    const forces = reader.points();
+    for (let i = 0; i < forces.length; i += 9) for (let k = 0; k < 3; ++k) forces[i + k] = (forces[i + k] - this.center[k]) * this.scale;
+    const fibers = this.worldPoints(reader.points());
+    return { index, info, codes, fields, lines, probes, contacts, forces, fibers };
   }
 
   /** Kept for the frame asked for last: its shape, its displacements and its section all need them. */
@@ -172,6 +177,7 @@ export class RunData {
   /** Values of a field in one frame (physical units; NaN where the run had none). */
   values(frame, field) {
     if (field.kind === 'solid') return null;
+    if (field.kind === 'relative') return this.relative(frame);
     if (field.kind === 'displacement') {
       const now = this.positions(frame);
       const out = new Float32Array(this.head.vertices);
@@ -189,6 +195,28 @@ export class RunData {
     return out;
   }
 
+  /** Displacements less the common motion of each body; kept for the frame asked for last. */
+  relative(frame) {
+    if (this.apart?.index !== frame.index) {
+      this.bodies ??= verticesOfBodies(this);
+      const values = apartFromCommon(this.rest, this.positions(frame), this.bodies).map((v) => v / this.scale);
+      this.apart = { index: frame.index, values };
+    }
+    return this.apart.values;
+  }
+
+  /** What has to be known of all frames before a field can be shown: the range of what the page itself computes. */
+  async prepare(field) {
+    if (field.kind !== 'relative' || this.relativeRanges) return;
+    const ranges = [];
+    for (let i = 0; i < this.frameCount; ++i) ranges.push(quantiles(this.relative(await this.frame(i)), this.bodies));
+    this.relativeRanges = ranges;
+  }
+
+  get hasForces() { return this.head.frames.some((f) => f.force > 0); }
+  get hasFibers() { return this.head.fibers === true; }
+  largestForce() { return this.mostForce ??= this.head.frames.reduce((most, f) => Math.max(most, f.force ?? 0), 0); }
+
   /** How many values of a field in one frame are not finite. */
   invalid(frame, field) { return field.kind === 'given' ? frame.info.ranges[field.index][2] : 0; }
 
@@ -201,31 +229,35 @@ export class RunData {
       list.push({ name: 'displacement', label: 'Displacement', unit: 'm', kind: 'displacement', place: 'vertex',
         diverging: false, center: 0, categories: [] });
     }
+    if (this.frameCount > 0) list.push(RELATIVE);
     list.push({ name: 'solid', label: 'None (solid color)', unit: '', kind: 'solid', place: 'vertex',
       categories: [] });
     return list;
   }
 
   /**
-   * Range of the finite values of a field in one frame: all of them, or those between the first and the last
-   * hundredth, which a hot spot does not stretch. Null when there is none.
+   * Range of the finite values of a field in one frame: all of them, or the share of them in the middle, which a hot
+   * spot does not stretch. Null when there is none.
    */
-  frameRange(field, index, full = true) {
+  frameRange(field, index, share = 1) {
     const info = this.head.frames[index];
     if (field.kind === 'displacement') return [0, info.displacement];
+    if (field.kind === 'relative') return this.relativeRanges?.[index][share] ?? null;
     const range = info.ranges[field.index];
     if (range[0] === null) return null;
-    // Where the hundredths leave nothing, all of it is shown.
-    return full || !(range[4] > range[3]) ? [range[0], range[1]] : [range[3], range[4]];
+    const [low, high] = { 0.98: [range[3], range[4]], 0.9: [range[5], range[6]] }[share] ?? [range[0], range[1]];
+    // Where a share leaves nothing, all of it is shown.
+    return high > low ? [low, high] : [range[0], range[1]];
   }
 
   /** The same over the whole run. */
-  runRange(field, full = true) {
-    const key = `${full} ${field.name}`;
+  runRange(field, share = 1) {
+    const key = `${share} ${field.name}`;
+    if (field.kind === 'relative' && !this.relativeRanges) return null;
     if (this.ranges.has(key)) return this.ranges.get(key);
     let out = null;
     for (let i = 0; i < this.frameCount; ++i) {
-      const range = this.frameRange(field, i, full);
+      const range = this.frameRange(field, i, share);
       if (range) out = out ? [Math.min(out[0], range[0]), Math.max(out[1], range[1])] : range;
     }
     this.ranges.set(key, out);

@@ -43,9 +43,11 @@ export function buildPage(head) {
   const page = {};
   page.stage = el('div', { class: 'stage' },
     el('canvas', { tabindex: '0', role: 'img', 'aria-label': 'The deformed body. Shift and arrow keys turn it, plus and minus zoom.' }),
-    el('div', { class: 'labels' }), el('div', { class: 'stamp' }), el('div', { class: 'legend', hidden: true }), svgElement('triad'));
+    el('div', { class: 'labels' }), el('div', { class: 'stamp' }), el('div', { class: 'legend', hidden: true }),
+    el('div', { class: 'arrow-key', hidden: true }), svgElement('triad'));
   page.stamp = page.stage.querySelector('.stamp');
   page.legend = page.stage.querySelector('.legend');
+  page.arrowKey = page.stage.querySelector('.arrow-key');
   page.transport = el('div', { class: 'transport', role: 'group', 'aria-label': 'Playback' });
   page.controls = el('aside', { class: 'card controls', 'aria-label': 'Display' });
   page.theme = el('button', { class: 'quiet', type: 'button', title: 'Switch between light and dark' }, 'Theme');

@@ -3,7 +3,7 @@ import { categoryColor, cssColor, gradient, partColor } from './colors.js';
 import { fixed, niceTicks, significant, unitScale } from './numbers.js';
 import { el } from './dom.js';
 
-export function drawLegend(host, { field, range, beyond, parts, invalid, perFrame }) {
+export function drawLegend(host, { field, range, share, beyond, parts, invalid, perFrame }) {
   host.replaceChildren();
   host.hidden = false;
   if (field.kind === 'solid' || field.categories.length > 0) {
@@ -36,7 +36,7 @@ export function drawLegend(host, { field, range, beyond, parts, invalid, perFram
   if (beyond) {
     const number = (v) => significant(v * scale.factor, 3);
     host.append(el('div', { class: 'legend-note' },
-      `colors span 1 % to 99 % of the points; all: ${number(beyond[0])} to ${number(beyond[1])}`));
+      `colors span ${significant(50 * (1 - share), 2)} % to ${significant(50 * (1 + share), 3)} % of the points; all: ${number(beyond[0])} to ${number(beyond[1])}`));
   }
   if (perFrame) host.append(el('div', { class: 'legend-note' }, 'range of this frame'));
   if (invalid > 0) {

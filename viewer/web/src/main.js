@@ -2,12 +2,13 @@
 import 'uplot/dist/uPlot.min.css';
 import './style.css';
 import { Controls } from './controls.js';
+import { CursorValue } from './cursor_value.js';
 import { RunData } from './data.js';
 import { Display } from './display.js';
 import { el } from './dom.js';
 import { buildPage } from './layout.js';
 import { significant, unitScale } from './numbers.js';
-import { frameNumber, nearestFrame, readOptions } from './options.js';
+import { frameNumber, looksOf, nearestFrame, readOptions } from './options.js';
 import { Plots } from './plots.js';
 import { Stage } from './stage.js';
 
@@ -19,20 +20,23 @@ class Viewer extends Display {
     this.state = {
       frame: run.frameCount > 0 ? frameNumber(options.frame, run.head.frames) : -1,
       field: wanted ?? this.fields[0],
-      full: options.full, // colors span all values, not those between the first and the last hundredth
+      share: options.share, // of the values that colors span; null: by the field
       rangeMode: options.range ? 'custom' : options.perFrame ? 'frame' : 'run',
       custom: options.range,
       ghost: options.ghost,
       edges: options.edges,
-      cut: options.cut ?? { axis: null, at: 0.5, flip: null },
+      cut: options.cut,
+      looks: looksOf(options, run.head.parts),
+      arrows: { ...options.arrows },
       playing: false,
       speed: 1,
     };
     const { cut } = this.state;
     if (cut.axis === 'auto') cut.axis = run.cutAxis();
     this.cutPlaces = Object.fromEntries(['x', 'y', 'z'].map((axis, i) => [axis, run.cutPosition(i)]));
+    this.cutPlaces.free = 0.5;
     if (cut.axis && cut.at !== null) this.cutPlaces[cut.axis] = cut.at;
-    if (cut.axis) cut.at = this.cutPlaces[cut.axis];
+    cut.at = cut.axis ? this.cutPlaces[cut.axis] : 0.5;
     // What was asked for and is not there, for whoever takes pictures.
     this.problems = [...options.problems];
     if (options.field && !wanted) {
@@ -62,6 +66,7 @@ class Viewer extends Display {
     }
     this.page.notes.append(...this.notes.map((text) => el('p', {}, text)));
     if (!options.shot) {
+      if (this.stage) this.cursor = new CursorValue(this);
       this.plots = new Plots(run, this.page.plots, (x) => this.go(nearestFrame(x, run.head.frames)));
       this.controls = new Controls(this);
       const dark = window.matchMedia('(prefers-color-scheme: dark)');
@@ -73,10 +78,12 @@ class Viewer extends Display {
       });
     }
     this.themeChanged(false);
+    await run.prepare(this.state.field);
     await this.showFrame();
     if (this.stage) {
       this.stage.fitPoints = await this.pointsToFit();
       this.stage.look(options.view, options.zoom);
+      if (options.camera) this.stage.stand(options.camera);
       this.openCut();
       this.showDisplay();
       this.stage.open();
@@ -125,6 +132,28 @@ class Viewer extends Display {
       this.plots?.setTime(info.time, state.playing);
     }
     this.controls?.frameShown();
+    this.cursor?.later();
+  }
+
+  get pictureName() { return `${this.run.head.title || 'isochor'} ${this.state.frame}`.replace(/[^\w.-]+/g, '_'); }
+
+  /** From the first frame to the last, as a film. */
+  async film() {
+    const { run } = this;
+    if (this.video || run.frameCount < 2) return;
+    this.play(false);
+    await this.go(0);
+    this.startVideo();
+    this.controls.filmChanged();
+    this.play(true);
+    this.filmEnds = true;
+  }
+
+  async endFilm() {
+    this.filmEnds = false;
+    this.play(false);
+    await this.endVideo(this.pictureName);
+    this.controls.filmChanged();
   }
 
   play(on) {
@@ -156,6 +185,7 @@ class Viewer extends Display {
   /** The next frame, drawn; those after it are unpacked meanwhile. */
   async advance() {
     const { run, state, stage } = this;
+    if (this.filmEnds && state.frame === run.frameCount - 1) { await this.endFilm(); return; }
     await this.go((state.frame + 1) % run.frameCount);
     if (stage?.pending) stage.drawChange();
     for (let k = 1; k <= 3; ++k) run.frame((state.frame + k) % run.frameCount).catch(() => {}); // who shows it hears of it

@@ -4,6 +4,8 @@ import { LineMaterial } from 'three/addons/lines/LineMaterial.js';
 import { LineSegments2 } from 'three/addons/lines/LineSegments2.js';
 import { LineSegmentsGeometry } from 'three/addons/lines/LineSegmentsGeometry.js';
 import { colorOr } from './colors.js';
+import { Arrows } from './arrows.js';
+import { placeLabels } from './labels.js';
 import { dotFragment, dotVertex } from './shaders.js';
 
 const HIDDEN_OPACITY = 0.35;
@@ -114,6 +116,8 @@ export class Overlays {
       });
       return { geometry, objects };
     });
+    this.arrows = new Arrows();
+    this.object.add(this.arrows.object);
     this.contacts = new Dots(this.object, [232, 120, 30], 9);
     this.probes = new Dots(this.object, [20, 24, 30], 12);
     this.labels = run.head.probes.map((name) => {
@@ -153,6 +157,7 @@ export class Overlays {
       const at = i - (i % 3);
       return this.isKept(points[at], points[at + 1], points[at + 2]) ? v : NaN;
     });
+    this.arrows.set(this.frame, (x, y, z) => this.isKept(x, y, z));
     this.contacts.set(kept(this.frame.contacts));
     this.probes.set(kept(this.frame.probes));
   }
@@ -162,15 +167,51 @@ export class Overlays {
     this.probes.resize(pixelRatio);
   }
 
-  placeLabels(camera, width, height) {
+  /** shows: { forces, fibers }. */
+  setArrows(shows) {
+    this.arrows.shows = shows;
+    if (this.frame) this.showPoints();
+  }
+
+  /** Beside their points, over neither each other nor what else stands on the picture. */
+  placeLabels(camera, host, moving) {
+    if (this.labels.length === 0) return;
+    const [width, height] = [host.clientWidth, host.clientHeight];
     const p = new THREE.Vector3();
-    this.labels.forEach((label, index) => {
+    const points = this.labels.map((label, index) => {
       p.fromArray(this.frame?.probes ?? [], 3 * index);
-      const finite = [p.x, p.y, p.z].every(Number.isFinite) && this.isKept(p.x, p.y, p.z);
-      if (finite) p.project(camera);
-      label.hidden = !finite || Math.abs(p.z) > 1;
-      const place = `translate(${((p.x + 1) / 2) * width + 10}px, ${((1 - p.y) / 2) * height - 22}px)`;
-      if (label.style.transform !== place) label.style.transform = place;
+      if (![p.x, p.y, p.z].every(Number.isFinite) || !this.isKept(p.x, p.y, p.z)) return null;
+      p.project(camera);
+      if (Math.abs(p.z) > 1) return null;
+      label.size ??= this.sizeOf(label);
+      if (!label.size) return null;
+      return { x: ((p.x + 1) / 2) * width, y: ((1 - p.y) / 2) * height, ...label.size };
     });
+    placeLabels(points, { width, height }, this.taken(host, moving)).forEach((place, index) => {
+      const label = this.labels[index];
+      label.hidden = place === null;
+      if (place === null) return;
+      const transform = `translate(${place.x}px, ${place.y}px)`;
+      if (label.style.transform !== transform) label.style.transform = transform;
+    });
+  }
+
+  sizeOf(label) {
+    const { hidden } = label;
+    label.hidden = false;
+    const size = { width: label.offsetWidth, height: label.offsetHeight };
+    label.hidden = hidden;
+    return size.width > 0 ? size : null;
+  }
+
+  /** Boxes of the stage where no label may stand; looked up at rest, since asking the browser takes time. */
+  taken(host, moving) {
+    if (this.boxes && moving) return this.boxes;
+    const from = host.getBoundingClientRect();
+    this.boxes = [...host.querySelectorAll('.stamp, .legend, .tools')].filter((node) => !node.hidden && node.offsetWidth > 0).map((node) => {
+      const box = node.getBoundingClientRect();
+      return { x: box.left - from.left, y: box.top - from.top, width: box.width, height: box.height };
+    });
+    return this.boxes;
   }
 }

@@ -8,32 +8,31 @@ export function pick(stage, event) {
   const caster = new THREE.Raycaster();
   stage.camera.updateMatrixWorld();
   caster.setFromCamera(at, stage.camera);
-  return nearest(stage.body.positions, stage.run.triangles, caster.ray, stage.body.shows.cut ? stage.body.uniforms.cut.value : null);
+  return nearest(stage.body.positions, stage.run.triangles, caster.ray, stage.body.shows.cut ? stage.body.uniforms.cut.value : null,
+    (t) => stage.body.looks[stage.run.trianglePart[t]] === 'shown');
 }
 
-/** Moeller and Trumbore; what a cut has taken away is not there. */
-function nearest(x, triangles, { origin, direction }, cut) {
+/** Moeller and Trumbore; what a cut has taken away is not there, nor what is hidden or looked through. */
+function nearest(x, triangles, { origin, direction }, cut, shown) {
   let best = null;
-  const e1 = [0, 0, 0], e2 = [0, 0, 0], s = [0, 0, 0];
-  const o = origin.toArray(), d = direction.toArray();
+  const { x: ox, y: oy, z: oz } = origin, { x: dx, y: dy, z: dz } = direction;
   for (let t = 0; t < triangles.length; t += 3) {
     const a = 3 * triangles[t], b = 3 * triangles[t + 1], c = 3 * triangles[t + 2];
-    for (let k = 0; k < 3; ++k) {
-      e1[k] = x[b + k] - x[a + k];
-      e2[k] = x[c + k] - x[a + k];
-      s[k] = o[k] - x[a + k];
-    }
-    const px = d[1] * e2[2] - d[2] * e2[1], py = d[2] * e2[0] - d[0] * e2[2], pz = d[0] * e2[1] - d[1] * e2[0];
-    const det = e1[0] * px + e1[1] * py + e1[2] * pz;
+    const ax = x[a], ay = x[a + 1], az = x[a + 2];
+    const fx = x[c] - ax, fy = x[c + 1] - ay, fz = x[c + 2] - az;
+    const px = dy * fz - dz * fy, py = dz * fx - dx * fz, pz = dx * fy - dy * fx;
+    const ex = x[b] - ax, ey = x[b + 1] - ay, ez = x[b + 2] - az;
+    const det = ex * px + ey * py + ez * pz;
     if (Math.abs(det) < 1e-20) continue;
-    const u = (s[0] * px + s[1] * py + s[2] * pz) / det;
+    const sx = ox - ax, sy = oy - ay, sz = oz - az;
+    const u = (sx * px + sy * py + sz * pz) / det;
     if (!(u >= 0 && u <= 1)) continue;
-    const qx = s[1] * e1[2] - s[2] * e1[1], qy = s[2] * e1[0] - s[0] * e1[2], qz = s[0] * e1[1] - s[1] * e1[0];
-    const v = (d[0] * qx + d[1] * qy + d[2] * qz) / det;
+    const qx = sy * ez - sz * ey, qy = sz * ex - sx * ez, qz = sx * ey - sy * ex;
+    const v = (dx * qx + dy * qy + dz * qz) / det;
     if (!(v >= 0 && u + v <= 1)) continue;
-    const far = (e2[0] * qx + e2[1] * qy + e2[2] * qz) / det;
-    if (!(far > 0) || (best && far >= best.distance)) continue;
-    const point = o.map((p, k) => p + far * d[k]);
+    const far = (fx * qx + fy * qy + fz * qz) / det;
+    if (!(far > 0) || (best && far >= best.distance) || !shown(t / 3)) continue;
+    const point = [ox + far * dx, oy + far * dy, oz + far * dz];
     if (cut && cut.x * point[0] + cut.y * point[1] + cut.z * point[2] + cut.w > 0) continue;
     best = { triangle: t / 3, weights: [1 - u - v, u, v], point, distance: far };
   }

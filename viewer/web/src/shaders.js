@@ -1,5 +1,6 @@
 // The look of the body: soft studio light fixed to the camera, so that the colors of a field stay readable
 // from every side, with mesh edges drawn by the fragment shader.
+// FADED lets one look through.
 //
 // Each picture pays for what it shows: FIELD colors by value (otherwise by the solid color), INVALID paints
 // values that are not finite gray, CUT takes one side of the plane away, EDGES draws the mesh. Without a
@@ -8,8 +9,9 @@
 // The position is interpolated at the covered part of a pixel (centroid): taken at its middle it would lie
 // outside of triangles seen edge-on, and the cut would leave specks along the outline.
 export const bodyVertex = /* glsl */ `
+attribute float shade;
 varying vec3 vEye;
-varying vec3 vNormal;
+varying vec4 vNormal;  // and in w how much of the light is missing
 #ifdef FIELD
 attribute float value;
 varying float vValue;
@@ -31,7 +33,7 @@ varying vec3 vCorner;
 void main() {
   vec4 eye = modelViewMatrix * vec4(position, 1.0);
   vEye = eye.xyz;
-  vNormal = normalMatrix * normal;
+  vNormal = vec4(normalMatrix * normal, shade);
 #ifdef FIELD
   vValue = value;
 #else
@@ -52,7 +54,7 @@ void main() {
 export const bodyFragment = /* glsl */ `
 uniform vec3 upEye;      // world up in camera space
 varying vec3 vEye;
-varying vec3 vNormal;
+varying vec4 vNormal;
 #ifdef FIELD
 uniform sampler2D table;
 uniform vec2 range;      // values at the ends of the color table
@@ -88,7 +90,7 @@ void main() {
 #endif
   base *= base;  // light adds up where values are linear; 2 is near enough to the 2.2 of a display
 
-  vec3 n = normalize(vNormal);
+  vec3 n = normalize(vNormal.xyz);
   vec3 v = normalize(-vEye);
   float facing = dot(n, v);
   if (facing < 0.0) { n = -n; facing = -facing; }
@@ -99,10 +101,11 @@ void main() {
             + 0.52 * max(dot(n, key), 0.0)
             + 0.22 * max(dot(n, fill), 0.0)
             + 0.20 * facing;
+  lit *= 1.0 - vNormal.w;
   vec3 color = base * lit;
   float h = max(dot(n, normalize(key + v)), 0.0);
   float h2 = h * h, h8 = h2 * h2 * h2 * h2, h32 = h8 * h8 * h8 * h8;
-  color += 0.085 * h2 * h8 * h32;
+  color += 0.085 * h2 * h8 * h32 * (1.0 - vNormal.w);
   // A darker rim separates overlapping folds of the same color.
   float rim = 1.0 - facing;
   color *= 1.0 - 0.30 * rim * rim * rim * sqrt(rim);
@@ -115,7 +118,11 @@ void main() {
   line *= 1.0 - smoothstep(0.12, 0.4, max(w.x, max(w.y, w.z)) * pixel);
   color = mix(color, color * 0.22, edges * line);
 #endif
+#ifdef FADED
+  gl_FragColor = vec4(sqrt(max(color, 0.0)), 0.16 + 0.45 * rim * rim);
+#else
   gl_FragColor = vec4(sqrt(max(color, 0.0)), 1.0);
+#endif
 }`;
 
 /** Marks inside and outside behind the cut plane; writes no color. */

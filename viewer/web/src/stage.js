@@ -10,6 +10,7 @@ import { copyFragment, copyVertex } from './shaders.js';
 // Colors are those of the display from end to end, wherever they are drawn to.
 THREE.ColorManagement.enabled = false;
 
+const SHADING = 7; // times what shadows take are left for everything else, while something moves
 const REST = 160; // ms without a change, then the picture is drawn at its best
 
 const VIEWS = {
@@ -65,6 +66,7 @@ export class Stage {
     this.triad = host.querySelector('.triad');
     this.ground = new Ground(run, this.up, run.groundHeight?.() ?? null);
     this.scene.add(this.body.object, this.overlays.object, this.ground.object);
+    this.shading = { at: -Infinity, cost: 0 };
     this.fitPoints = [run.rest];
     this.resize();
   }
@@ -99,7 +101,7 @@ export class Stage {
   }
 
   drawMoving(now = performance.now()) {
-    this.drawAt(this.pace.quality);
+    this.drawAt(this.pace.quality, true);
     this.measure(now);
     this.settle();
   }
@@ -107,8 +109,9 @@ export class Stage {
   /** What was drawn in haste is drawn again once nothing moves. */
   settle() {
     clearTimeout(this.rest);
-    if (this.playing || this.drawn === 0) return;
-    this.rest = setTimeout(() => { if (!this.playing && this.drawn !== 0) this.draw(); }, REST);
+    const hasty = () => this.drawn !== 0 || this.unshaded;
+    if (this.playing || !hasty()) return;
+    this.rest = setTimeout(() => { if (!this.playing && hasty()) this.draw(); }, REST);
   }
 
   /** Tells the pace how long a picture took, as soon as the browser knows that it is done. */
@@ -155,7 +158,7 @@ export class Stage {
   /** At its best, now. */
   draw() { this.drawAt(0); }
 
-  drawAt(quality) {
+  drawAt(quality, moving = false) {
     this.pending = false;
     this.drawn = quality;
     const { share, smooth } = QUALITIES[quality];
@@ -166,12 +169,37 @@ export class Stage {
     // All of it lies in a sphere of radius one.
     this.body.setInside(this.camera.position.length() < 1 + 2 * this.camera.near);
     this.ground.seenFrom(this.camera);
-    if (this.groundOf !== this.body.positions) this.ground.setShape(this.groundOf = this.body.positions);
+    this.shade(moving);
     this.renderer.info.reset();
     if (smooth) this.renderSmooth();
     else this.renderer.render(this.scene, this.camera);
-    this.overlays.placeLabels(this.camera, this.host.clientWidth, this.host.clientHeight);
+    this.overlays.placeLabels(this.camera, this.host, moving);
     this.drawTriad();
+    this.onDrawn?.();
+  }
+
+  /** Shadows follow what moves as often as a part of the time allows, and what rests at once. */
+  shade(moving) {
+    this.unshaded = this.body.shadedShape !== this.body.positions;
+    const start = performance.now();
+    if (!this.unshaded || (moving && start - this.shading.at < SHADING * this.shading.cost)) return;
+    this.ground.setShape(this.body.positions);
+    this.body.shade();
+    this.unshaded = false;
+    const end = performance.now();
+    this.shading = { at: end, cost: end - start };
+  }
+
+  /** look: 'shown', 'faded' or 'hidden'. */
+  setLook(part, look) {
+    this.body.setLook(part, look);
+    this.ground.setParts((p) => this.body.looks[p] === 'shown');
+    this.invalidate();
+  }
+
+  setFloor(color) {
+    this.ground.setFloor(color);
+    if (Number.isFinite(this.ground.height)) this.ground.lay();
   }
 
   /** Four samples a pixel, resolved and copied to the canvas as they are. */
@@ -223,6 +251,15 @@ export class Stage {
     this.zoom = zoom;
   }
 
+  /** Where it stands and what it looks at: six numbers. */
+  stand(camera) {
+    this.view = null;
+    this.camera.position.set(...camera.slice(0, 3));
+    this.controls.target.set(...camera.slice(3));
+    this.controls.update();
+    this.invalidate();
+  }
+
   /** Centers the projected body in the space the legend leaves free. */
   fit(zoom) {
     const { camera, controls } = this;
@@ -259,9 +296,9 @@ export class Stage {
     this.invalidate();
   }
 
-  /** How far the camera stands along an axis from what it looks at. */
-  toCamera(axis) {
-    return this.camera.position.getComponent(axis) - this.controls.target.getComponent(axis);
+  /** How far the camera stands along a direction from what it looks at. */
+  toCamera(direction) {
+    return this.camera.position.clone().sub(this.controls.target).dot(new THREE.Vector3(...direction));
   }
 
   /** Orbit by keyboard, in degrees. */

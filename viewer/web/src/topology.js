@@ -189,10 +189,11 @@ export function sliceCells(cells, positions, values, plane) {
 }
 
 /** Where the surface meets the plane: pairs of points, the outline of the section. */
-export function sliceSurface(triangles, positions, plane) {
+export function sliceSurface(triangles, positions, plane, wanted = () => true) {
   const out = [];
   const side = (v) => plane[0] * positions[3 * v] + plane[1] * positions[3 * v + 1] + plane[2] * positions[3 * v + 2] + plane[3] || 1e-7;
   for (let f = 0; f < triangles.length; f += 3) {
+    if (!wanted(f / 3)) continue;
     for (let k = 0; k < 3; ++k) {
       const i = triangles[f + k], j = triangles[f + ((k + 1) % 3)];
       const a = side(i), b = side(j);

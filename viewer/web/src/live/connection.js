@@ -60,8 +60,8 @@ export class Connection {
     if (this.viewer) this.ask('/leave', { method: 'POST', keepalive: true }).catch(() => {});
   }
 
-  async picture(after, field) {
-    const query = new URLSearchParams({ after: String(after), field });
+  async picture(after, field, wants) {
+    const query = new URLSearchParams({ after: String(after), field, wants });
     return new Message(await (await this.ask(`/picture?${query}`)).arrayBuffer());
   }
 

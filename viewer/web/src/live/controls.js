@@ -5,6 +5,7 @@ import { choice, icon } from '../layout.js';
 import { significant } from '../numbers.js';
 import { Dials } from './dials.js';
 import { TOOLS } from './hand.js';
+import { videoType } from '../video.js';
 
 const SPEEDS = [[0.1, '0.1 ×'], [0.25, '¼ ×'], [0.5, '½ ×'], [1, 'real time'], [2, '2 ×'], [1000, 'as fast as it can']];
 
@@ -26,9 +27,11 @@ export class LiveControls extends DisplayPanel {
     this.speed = el('select', { 'aria-label': 'Speed, at most', title: 'Speed, at most', onchange: () => viewer.send({ do: 'speed', value: Number(this.speed.value) }) },
       ...SPEEDS.map(([v, text]) => el('option', { value: v, selected: v === 1 }, text)));
     this.recordButton = button('Record', 'Write the outputs of isochor run from here on', () => viewer.send({ do: viewer.frame?.info.recorded === null ? 'record' : 'stop_recording' }), 'record');
+    this.filmButton = button('Video', 'A film of the picture from here on (WebM)', () => viewer.film(), 'film');
+    this.filmButton.hidden = !viewer.stage || videoType() === null;
     this.driven = [this.playButton, this.stepButton, this.resetButton, this.speed, this.recordButton];
     viewer.page.transport.append(this.playButton, this.stepButton, this.resetButton, this.pace, this.speed, this.recordButton,
-      button('PNG', 'The picture as a file (P)', () => viewer.savePicture()), button('Link', 'Copy an address that shows this view (L)', () => viewer.copyLink()));
+      button('PNG', 'The picture as a file (P)', () => viewer.savePicture(viewer.pictureName)), this.filmButton, button('Link', 'Copy an address that shows this view (L)', () => viewer.copyLink()));
   }
 
   buildPanels() {
@@ -43,6 +46,7 @@ export class LiveControls extends DisplayPanel {
     if (viewer.stage) page.stage.append(this.tools.node);
     this.held = el('ul', { class: 'held' });
     this.heldGroup = group('Held', this.held);
+    this.heldGroup.hidden = true;
     page.dials.append(this.heldGroup);
     this.dials = new Dials(viewer, page.dials);
     page.controls.append(...this.groups([['run', 'So far'], ['frame', 'Now'], ['custom', 'Custom']]),
@@ -51,6 +55,11 @@ export class LiveControls extends DisplayPanel {
     page.controls.hidden = !viewer.stage;
     this.showRange();
     this.cutChanged();
+  }
+
+  filmChanged() {
+    this.say(this.filmButton, this.viewer.video ? 'End video' : 'Video');
+    this.filmButton.classList.toggle('on', Boolean(this.viewer.video));
   }
 
   playOrPause() {
@@ -111,7 +120,7 @@ export class LiveControls extends DisplayPanel {
       ' ': () => isOnButton(event) || this.playOrPause(),
       '.': () => this.viewer.send({ do: 'step' }),
       Backspace: () => this.viewer.send({ do: 'reset' }),
-      p: () => this.viewer.savePicture(),
+      p: () => this.viewer.savePicture(this.viewer.pictureName),
       l: () => this.viewer.copyLink(),
     };
     if (tool) {

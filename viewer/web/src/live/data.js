@@ -1,6 +1,8 @@
 // A scene that runs, as the stage takes it: what RunData is for a run that is over. Lengths are scaled so that the scene
 // with room for its motion lies in a sphere of radius one.
 
+import { RELATIVE, apartFromCommon, verticesOfBodies } from '../rigid.js';
+
 const ROOM = 1.5; // for motion, over the size at rest
 
 export class LiveData {
@@ -27,6 +29,7 @@ export class LiveData {
     this.rest = this.toWorld(meters);
     this.frameCount = 1;
     this.usual = new Map();
+    this.mostForce = 0; // so far [N]
   }
 
   /** Bodies come before obstacles. */
@@ -62,7 +65,13 @@ export class LiveData {
     const lines = head.lines.map((count) => this.toWorld(message.floats(3 * count)));
     const probes = this.toWorld(message.floats(3 * head.probes));
     const contacts = this.toWorld(message.floats(3 * head.contacts));
-    return { info: head, positions, field: head.field, given: values, lines, probes, contacts, kept: new Map() };
+    const forces = message.floats(9 * head.forces);
+    for (let i = 0; i < forces.length; i += 9) {
+      for (const at of [i + 3, i + 6]) this.mostForce = Math.max(this.mostForce, Math.hypot(forces[at], forces[at + 1], forces[at + 2]) || 0);
+      for (let k = 0; k < 3; ++k) forces[i + k] = (forces[i + k] - this.center[k]) * this.scale;
+    }
+    const fibers = this.toWorld(message.floats(3 * head.fibers));
+    return { info: head, positions, field: head.field, given: values, lines, probes, contacts, forces, fibers, kept: new Map() };
   }
 
   positions(frame) { return frame.positions; }
@@ -73,6 +82,7 @@ export class LiveData {
       if (f.name === 'displacement') return { ...f, kind: 'displacement' };
       return f.place === 'triangle' ? { ...f, kind: 'map', index: map++ } : { ...f, kind: 'given' };
     });
+    list.push(RELATIVE);
     list.push({ name: 'solid', label: 'None (solid color)', unit: '', kind: 'solid', place: 'vertex', categories: [] });
     return list;
   }
@@ -84,8 +94,14 @@ export class LiveData {
     if (field.kind === 'given') return frame.field === field.name ? frame.given : null;
     let out = frame.kept.get(field.name);
     if (out) return out;
-    out = new Float32Array(this.head.vertices);
     const { positions } = frame;
+    if (field.kind === 'relative') {
+      this.bodies ??= verticesOfBodies(this);
+      out = apartFromCommon(this.rest, positions, this.bodies).map((v) => v / this.scale);
+      frame.kept.set(field.name, out);
+      return out;
+    }
+    out = new Float32Array(this.head.vertices);
     for (let i = 0; i < this.bodyVertices; ++i) {
       out[i] = Math.hypot(positions[3 * i] - this.rest[3 * i], positions[3 * i + 1] - this.rest[3 * i + 1],
         positions[3 * i + 2] - this.rest[3 * i + 2]) / this.scale;
@@ -94,7 +110,7 @@ export class LiveData {
     return out;
   }
 
-  /** All values, and those between the first and the last hundredth, of the bodies in one picture. */
+  /** Ranges of the values of the bodies in one picture, by the share of them that is in it. */
   stats(frame, field) {
     const key = `stats ${field.name}`;
     if (frame.kept.has(key)) return frame.kept.get(key);
@@ -106,9 +122,13 @@ export class LiveData {
       const zeros = finite.length + invalid < this.bodyVertices;
       if (finite.length > 0 || zeros) {
         const at = (i) => (finite.length > 0 ? finite[i] : 0);
-        const cut = Math.floor(finite.length / 100), last = finite.length - 1;
+        const last = finite.length - 1;
         const zero = (range) => (zeros ? [Math.min(0, range[0]), Math.max(0, range[1])] : range);
-        out = { full: zero([at(0), at(last)]), usual: zero([at(cut), at(last - cut)]), invalid };
+        const middle = (share) => {
+          const cut = Math.floor(finite.length * (0.5 - 0.5 * share) + 1e-9);
+          return zero([at(cut), at(last - cut)]);
+        };
+        out = { 1: zero([at(0), at(last)]), 0.98: middle(0.98), 0.9: middle(0.9), invalid };
       }
     }
     frame.kept.set(key, out);
@@ -121,18 +141,24 @@ export class LiveData {
     if (!now) return;
     const join = (a, b) => (a ? [Math.min(a[0], b[0]), Math.max(a[1], b[1])] : b);
     const known = this.usual.get(field.name) ?? {};
-    this.usual.set(field.name, { full: join(known.full, now.full), usual: join(known.usual, now.usual) });
+    this.usual.set(field.name, Object.fromEntries([1, 0.98, 0.9].map((share) => [share, join(known[share], now[share])])));
   }
 
-  forgetRanges() { this.usual.clear(); }
+  forgetRanges() {
+    this.usual.clear();
+    this.mostForce = 0;
+  }
 
-  frameRange(field, frame, full = true) { return this.pick(this.stats(frame, field), full); }
-  runRange(field, full = true) { return this.pick(this.usual.get(field.name), full); }
+  get hasForces() { return this.head.forces; }
+  get hasFibers() { return this.head.fibers; }
+  largestForce() { return this.mostForce; }
 
-  pick(ranges, full) {
+  frameRange(field, frame, share = 1) { return this.pick(this.stats(frame, field), share); }
+  runRange(field, share = 1) { return this.pick(this.usual.get(field.name), share); }
+
+  pick(ranges, share) {
     if (!ranges) return null;
-    const { usual } = ranges;
-    return full || !(usual[1] > usual[0]) ? ranges.full : usual;
+    return ranges[share][1] > ranges[share][0] ? ranges[share] : ranges[1];
   }
 
   /** Of the shadow: a table's, where there is one below the bodies. */

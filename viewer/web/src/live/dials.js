@@ -62,6 +62,9 @@ class DialRow {
   }
 }
 
+/** Six sliders for each thing that can be put elsewhere would bury the rest. */
+const folded = (title, nodes) => el('details', { class: 'folded' }, el('summary', {}, title), ...nodes);
+
 export class Dials {
   constructor(viewer, host) {
     this.rows = viewer.run.head.dials.map((dial, index) => new DialRow(dial, index, viewer));
@@ -73,7 +76,7 @@ export class Dials {
     const hand = groups.get('Hand');
     groups.delete('Hand');
     if (hand) groups.set('Hand', hand); // last: it is of the tool, not of the scene
-    for (const [title, nodes] of groups) host.append(group(title, ...nodes));
+    for (const [title, nodes] of groups) host.append(title.startsWith('Pose of ') ? folded(title, nodes) : group(title, ...nodes));
   }
 
   update(values) {

@@ -7,14 +7,14 @@ import { Display } from '../display.js';
 import { el } from '../dom.js';
 import { buildPage } from '../layout.js';
 import { significant } from '../numbers.js';
-import { pick } from '../pick.js';
+import { looksOf } from '../options.js';
 import { Stage } from '../stage.js';
 import { Connection } from './connection.js';
 import { LiveControls } from './controls.js';
 import { LiveData } from './data.js';
 import { Hand } from './hand.js';
 import { ScrollPlots } from './scroll_plots.js';
-import { makeLink, readLink } from './view_link.js';
+import { copyLink, readLink } from '../view_link.js';
 
 const AGAIN = 700; // ms, then a server that does not answer is asked again
 const HIDDEN = 200; // ms: a page that nobody sees draws nothing, but goes on looking
@@ -28,14 +28,15 @@ class LiveViewer extends Display {
     this.drives = false;
     this.pictures = 0;
     this.state = {
-      frame: null, field: this.fields.find((f) => f.name === options.field) ?? this.firstField(), full: options.full,
+      frame: null, field: this.fields.find((f) => f.name === options.field) ?? this.firstField(), share: options.share,
       rangeMode: options.range ? 'custom' : options.perFrame ? 'frame' : 'run', custom: options.range,
-      ghost: options.ghost, edges: options.edges, cut: options.cut ?? { axis: null, at: 0.5, flip: null },
+      ghost: options.ghost, edges: options.edges, cut: options.cut,
+      looks: looksOf(options, run.head.parts), arrows: { ...options.arrows },
     };
     const { cut } = this.state;
     if (cut.axis === 'auto') cut.axis = run.cutAxis();
     cut.at ??= 0.5;
-    this.cutPlaces = { x: 0.5, y: 0.5, z: 0.5 };
+    this.cutPlaces = { x: 0.5, y: 0.5, z: 0.5, free: 0.5 };
   }
 
   firstField() { return this.fields.find((f) => f.name === 'von_mises') ?? this.fields[0]; }
@@ -80,12 +81,7 @@ class LiveViewer extends Display {
     if (!stage) return;
     stage.fitPoints = [this.run.rest.subarray(0, 3 * this.run.bodyVertices), frame.positions.subarray(0, 3 * this.run.bodyVertices)];
     stage.look(options.view, 0.8 * options.zoom); // room for what moves
-    if (options.camera) {
-      stage.view = null;
-      stage.camera.position.set(...options.camera.slice(0, 3));
-      stage.controls.target.set(...options.camera.slice(3));
-      stage.controls.update();
-    }
+    if (options.camera) stage.stand(options.camera);
     this.openCut();
     stage.open();
   }
@@ -93,12 +89,21 @@ class LiveViewer extends Display {
   /** Which field the server has to send along. */
   get asked() { return this.state.field.kind === 'given' ? this.state.field.name : ''; }
 
+  /** What else it has to send. */
+  get wants() { return Object.keys(this.state.arrows).filter((name) => this.state.arrows[name]).join(); }
+
+  arrowsChanged() { this.connection.hurry?.(); }
+
   show(frame) {
     const first = this.frame === null;
     const { info } = frame;
+    if (this.isShown(frame)) {
+      this.frame.info = info;
+      this.showWords(info);
+      return;
+    }
     if (this.frame && info.step < this.frame.info.step) this.run.forgetRanges();
     this.frame = this.state.frame = frame;
-    this.drives = info.drives;
     const { state, stage, run } = this;
     const known = run.runRange(state.field) !== null;
     run.remember(frame, state.field);
@@ -106,18 +111,32 @@ class LiveViewer extends Display {
       stage.body.setShape(frame.positions);
       stage.overlays.setFrame(frame);
       this.hand.update(info.handles);
-      if (stage.playing !== info.playing) stage.setPlaying(info.playing);
+      const moves = info.playing && !info.settled && !info.failed;
+      if (stage.playing !== moves) stage.setPlaying(moves);
     }
     this.showField();
     this.showRangeSoon(known ? 400 : 0);
-    this.controls.update(frame);
     this.plots.add(info.time, info.measures);
-    this.tell(info);
+    this.showWords(info);
     if (first) this.open(frame);
     if (stage?.pending) stage.drawChange();
     this.hand?.place();
     this.cursor?.later();
+  }
+
+  /** What beside the picture changes: who drives, how fast it goes. */
+  showWords(info) {
+    this.drives = info.drives;
+    this.controls.update({ info });
+    this.tell(info);
     ++this.pictures;
+  }
+
+  /** The server answers after a while with the picture that is on the screen: there is nothing to draw. */
+  isShown(frame) {
+    const { frame: now } = this;
+    return now !== null && now.info.number === frame.info.number && now.field === frame.field
+      && now.forces.length === frame.forces.length && now.fibers.length === frame.fibers.length;
   }
 
   /** The numbers beside the colors follow them, but not faster than anybody reads, nor while somebody types. */
@@ -179,31 +198,19 @@ class LiveViewer extends Display {
 
   /** What soft body is under a point of the window, if any. */
   pickAt(event) {
-    const hit = this.stage ? pick(this.stage, event) : null;
+    const hit = super.pickAt(event);
     return hit && !this.run.head.parts[this.run.trianglePart[hit.triangle]].obstacle ? hit : null;
   }
 
-  savePicture() {
-    const { stage } = this;
-    if (!stage) return;
-    stage.draw();
-    const copy = Object.assign(document.createElement('canvas'), { width: stage.canvas.width, height: stage.canvas.height });
-    const ink = copy.getContext('2d');
-    ink.fillStyle = getComputedStyle(document.documentElement).getPropertyValue('--card');
-    ink.fillRect(0, 0, copy.width, copy.height);
-    ink.drawImage(stage.canvas, 0, 0);
-    copy.toBlob((blob) => {
-      const link = el('a', { href: URL.createObjectURL(blob), download: `${this.run.name}_${this.frame?.info.step ?? 0}.png` });
-      link.click();
-      URL.revokeObjectURL(link.href);
-      this.saved = blob.size; // for tests
-    });
-  }
+  get pictureName() { return `${this.run.name}_${this.frame?.info.step ?? 0}`; }
 
-  async copyLink() {
-    const link = makeLink(this, window.location);
-    window.history.replaceState(null, '', link);
-    try { await navigator.clipboard.writeText(link); } catch { /* it stands in the address bar */ }
+  copyLink() { copyLink(this); }
+
+  /** A film of what is to be seen from now on, or its end. */
+  async film() {
+    if (this.video) await this.endVideo(this.pictureName);
+    else this.startVideo();
+    this.controls.filmChanged();
   }
 }
 
@@ -224,10 +231,10 @@ async function look(viewer, connection) {
   let after = 0;
   for (;;) {
     await nextPicture(viewer.stage);
-    const field = viewer.asked;
-    const asked = connection.picture(after, field);
+    const field = viewer.asked, { wants } = viewer;
+    const asked = connection.picture(after, field, wants);
     // A field that was chosen meanwhile is asked for at once.
-    const hurry = new Promise((done) => { connection.hurry = () => { if (field !== viewer.asked) done(null); }; });
+    const hurry = new Promise((done) => { connection.hurry = () => { if (field !== viewer.asked || wants !== viewer.wants) done(null); }; });
     const message = await Promise.race([asked, hurry]);
     if (message === null) {
       asked.catch(() => {}); // nobody waits for it any more
