@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <functional>
 
+#include "engine/elements/material_model.h"
 #include "isochor/gradients.h"
 #include "isochor/viscoelastic.h"
 #include "numbers/cube.h"

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "engine/base/base.h"
 #include "numbers/cube.h"
 
 using namespace isochor;
@@ -44,8 +45,8 @@ std::string refusal(const Def& def, Make make) {
   return compiled ? "" : compiled.error();
 }
 
-// A limb along x with two bones that meet at x = 0; the second turns about y. Bones are the middle of the
-// limb, and share what is close to the joint.
+// A limb along x with two flat bones in its middle, which meet at x = 0 and share what is close to the
+// joint; the second turns about y.
 struct Elbow {
   World world;
   BodyId body{};
@@ -58,7 +59,7 @@ struct Elbow {
     test::add_volume(world, body);
     SkinDef def;
     def.where.body = body;
-    def.where.boxes = {{Vec3{-1, -0.03, -0.03}, Vec3{1, 0.03, 0.03}}};
+    def.where.boxes = {{Vec3{-1, -0.06, -0.03}, Vec3{1, 0.06, 0.03}}};
     def.bones.resize(2);
     for (const Vec3& X : mesh.nodes) {
       const double s = std::clamp(0.5 + X.x / 0.2, 0.0, 1.0);

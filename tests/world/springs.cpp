@@ -80,7 +80,7 @@ TEST_CASE("a weight on a spring swings with the period of its mass") {
       test::must_advance(block.world, period / steps);
       highest = std::max(highest, block.height() - rest);
     }
-    CHECK(highest == Approx(0.1 * std::sqrt(2.0 / 400)).epsilon(0.01));
+    CHECK(highest == Approx(0.1 * std::sqrt(2.0 / 400)).epsilon(0.02));
     error.push_back(std::abs(block.height() - rest) / highest);
     CHECK(error.back() < 0.03);
   }

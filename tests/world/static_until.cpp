@@ -1,6 +1,7 @@
 // Statics then dynamics in one run.
 #include <cmath>
 
+#include "engine/base/base.h"
 #include "numbers/cube.h"
 
 using namespace isochor;

@@ -29,9 +29,8 @@ std::string refusal(const TractionDef& def) {
 
 TEST_CASE("a traction on the area as it is gives a bar that true stress") {
   // nu = 0.5: mu (s^2 - 1/s) = t, where per area at rest it is mu (s - 1/s^2) = t.
-  constexpr double mu = 1e5, t = 8e4;
+  constexpr double mu = 1e5, t = 4e4;
   for (const Element element : kElements) {
-    int iterations[2] = {};
     for (const bool lagged : {false, true}) {
       World world = test::make_world(test::static_options());
       const BodyId body = test::add_body(world, test::uneven_cube(cells_of(element)), element,
@@ -46,7 +45,10 @@ TEST_CASE("a traction on the area as it is gives a bar that true stress") {
       def.lagged = lagged;
       def.amount = Curve::ramp(1);
       value(world.add(traction(def)));
-      iterations[lagged] = test::must_advance(world).iterations;
+      // By lagged areas slowly, so in steps.
+      int iterations = 0;
+      for (int k = 0; k < 4; ++k) iterations += test::must_advance(world, 0.25).iterations;
+      CHECK(iterations <= (lagged ? 60 : 20));
       double low = 0.2, high = 1;
       for (int k = 0; k < 100; ++k) {
         const double s = 0.5 * (low + high);
@@ -58,7 +60,6 @@ TEST_CASE("a traction on the area as it is gives a bar that true stress") {
             }) < 1e-7);
       CHECK(test::stress_error(world.fields(body), 0, -t) < 1e-4 * t);
     }
-    CHECK(iterations[0] <= iterations[1]);
   }
 }
 
