@@ -167,6 +167,7 @@ void add_given(std::vector<SceneCase>& out) {
   bones.bones = {bone, bone};
   bones.bones[1].track.keys.push_back({1, {0.1, 0, 0.05}, {0.8, 0, 0.6, 0}});
   c.effects = {driven(data), skin(bones)};
+  c.numbered_cells = true;  // nodes and weights by number
   out.push_back(c);
 }
 
