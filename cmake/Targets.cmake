@@ -105,7 +105,7 @@ isochor_sources(_materials materials)
 isochor_module(materials ${_materials})
 target_link_libraries(isochor_materials PUBLIC isochor_engine PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>)
 
-isochor_sources(_constraints constraints/stencil constraints/volume constraints/chamber constraints/layer
+isochor_sources(_constraints constraints/stencil constraints/active constraints/volume constraints/chamber constraints/layer
   constraints/line constraints/support constraints/load constraints/contact constraints/contact/friction
   constraints/contact/shape constraints/contact/rigid constraints/contact/surface)
 isochor_module(constraints ${_constraints})

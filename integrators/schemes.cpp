@@ -1,5 +1,8 @@
 #include "isochor/schemes.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/step/time_scheme.h"
 
 namespace isochor {
@@ -207,6 +210,40 @@ class GeneralizedAlpha final : public TimeScheme {
   double am_, af_, gamma_, beta_;
 };
 
+// Equilibria up to a time, then a scheme of dynamics from rest.
+class StaticUntil final : public TimeScheme {
+ public:
+  StaticUntil(double time, SchemePtr then)
+      : time_(time), then_(std::move(then)), name_("static, then " + std::string(then_->name())) {}
+  std::string_view name() const override { return name_; }
+  void describe(Fingerprint& f) const override { f.add(name(), time_, then_); }
+  int order() const override { return then_->order(); }
+  double error_constant() const override { return then_->error_constant(); }
+  double largest_energy_gain() const override { return then_->largest_energy_gain(); }
+  SchemeMemory memory() const override { return then_->memory(); }
+  double begin(const State& state, std::span<const double> memory, double h,
+               std::span<Vec3> predicted) const override {
+    return rests(state, h) ? statics_.begin(state, memory, h, predicted)
+                           : then_->begin(state, memory, h, predicted);
+  }
+  void finish(double h, std::span<const Vec3> x_new, std::span<const Vec3> predicted, State& state,
+              std::span<double> memory) const override {
+    if (!rests(state, h)) return then_->finish(h, x_new, predicted, state, memory);
+    statics_.finish(h, x_new, predicted, state, memory);
+    std::fill(state.v.begin(), state.v.end(), Vec3{});
+    std::fill(memory.begin(), memory.end(), 0.0);
+  }
+
+ private:
+  // Increments that begin before the time, but for rounding.
+  bool rests(const State& state, double h) const { return state.t + 1e-6 * h < time_; }
+
+  double time_;
+  SchemePtr then_;
+  std::string name_;
+  Statics statics_;
+};
+
 }  // namespace
 
 SchemePtr statics() {
@@ -232,6 +269,12 @@ SchemePtr generalized_alpha(double spectral_radius) {
 }
 SchemePtr newmark() {
   return std::make_shared<GeneralizedAlpha>("newmark", 0, 0);
+}
+
+SchemePtr static_until(double time, SchemePtr then) {
+  if (!(time > 0) || !std::isfinite(time) || !then || !then->has_inertia() || then->evaluated_at() != 1)
+    return nullptr;
+  return std::make_shared<StaticUntil>(time, std::move(then));
 }
 
 }  // namespace isochor

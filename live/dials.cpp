@@ -184,6 +184,19 @@ void Dials::add_amounts() {
   };
   for (std::size_t i = 0; i < s.tractions.size(); ++i)
     scale("Loads", s.tractions[i].name, tractions_kind, i, s.tractions[i].amount);
+  for (std::size_t i = 0; i < s.muscles.size(); ++i)
+    amount(pressure_dial("Muscles", s.muscles[i].name, s.muscles[i].amount), muscles_kind, i,
+           s.muscles[i].amount);
+  for (std::size_t i = 0; i < s.growth.size(); ++i) {
+    // From nothing to twice what is said: beyond, and with other signs, cells may turn over.
+    const Curve& curve = s.growth[i].amount;
+    const double high = round_up(2 * std::max(reach(curve), 0.5));
+    amount({"Growth", s.growth[i].name + ", times", "", lowest(curve) < 0 ? -high : 0, high, false},
+           growth_kind, i, curve);
+  }
+  for (std::size_t i = 0; i < s.springs.size(); ++i)
+    amount({"Springs", s.springs[i].name + ", over its length without tension", "", 0, 2, false},
+           springs_kind, i, s.springs[i].amount);
   for (std::size_t i = 0; i < s.forces.size(); ++i)
     scale("Loads", s.forces[i].name, forces_kind, i, s.forces[i].amount);
   for (std::size_t i = 0; i < s.dirichlet.size(); ++i) {

@@ -52,6 +52,22 @@ Result<void> check_body(const std::string& where, const SceneBody& body) {
   return {};
 }
 
+static Result<void> check_static_until(const std::string& where, const AnalysisDef& a) {
+  if (!a.static_until) return {};
+  const std::string key = where + ".static_until = " + number(*a.static_until) + " s";
+  if (!(*a.static_until > 0) || !(*a.static_until < a.duration)) {
+    return Error{key + "; it must be positive and less than the duration, " + number(a.duration) +
+                 " (statics throughout is " + where + ".type \"static\")"};
+  }
+  if (a.type == AnalysisType::statics)
+    return Error{key + " belongs to dynamics; remove it or set " + where + ".type to \"dynamic\""};
+  if (a.scheme == SchemeWord::implicit_midpoint)
+    return Error{key + " does not go with implicit_midpoint, which balances forces in the middle of a step"};
+  if (a.options.time_error > 0)
+    return Error{key + " does not go with time_error, which is of dynamics from the start; drop one of them"};
+  return {};
+}
+
 Result<void> check_analysis(const std::string& where, const AnalysisDef& a) {
   if (!(a.duration > 0) || !std::isfinite(a.duration)) {
     return Error{where + ".duration = " + number(a.duration) + "; it must be positive and finite"};
@@ -83,6 +99,7 @@ Result<void> check_analysis(const std::string& where, const AnalysisDef& a) {
   if (a.type == AnalysisType::statics && a.scheme != SchemeWord::implicit_euler) {
     return Error{where + ".scheme belongs to dynamics; remove it or set " + where + ".type to \"dynamic\""};
   }
+  if (auto r = check_static_until(where, a); !r) return r;
   if (a.path_step && (!(*a.path_step > 0) || !std::isfinite(*a.path_step))) {
     return Error{where + ".path_step = " + number(*a.path_step) + " m; it must be positive and finite"};
   }

@@ -3,8 +3,9 @@
 
 namespace isochor {
 
-SchemePtr make_scheme(const AnalysisDef& a) {
-  if (a.type == AnalysisType::statics) return a.path_step ? continuation() : statics();
+namespace {
+
+SchemePtr dynamics(const AnalysisDef& a) {
   switch (a.scheme) {
     case SchemeWord::implicit_euler:
       return implicit_euler();
@@ -18,6 +19,13 @@ SchemePtr make_scheme(const AnalysisDef& a) {
       return implicit_midpoint();
   }
   return nullptr;
+}
+
+}  // namespace
+
+SchemePtr make_scheme(const AnalysisDef& a) {
+  if (a.type == AnalysisType::statics) return a.path_step ? continuation() : statics();
+  return a.static_until ? static_until(*a.static_until, dynamics(a)) : dynamics(a);
 }
 
 }  // namespace isochor

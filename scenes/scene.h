@@ -137,6 +137,7 @@ struct AnalysisDef {
   AnalysisType type = AnalysisType::statics;
   SchemeWord scheme = SchemeWord::implicit_euler;  // dynamics
   double spectral_radius = 0.8;                    // of generalized_alpha, 0 to 1
+  std::optional<double> static_until;              // [s], dynamics: equilibria before it
   double duration = 1;                             // [s]; statics: final load factor
   int steps = 10;                                  // results are reported this often
   std::optional<double> step;                      // [s], instead of steps

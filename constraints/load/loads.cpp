@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "constraints/load/current_traction.h"
 #include "constraints/stencil/face_pool.h"
 #include "engine/scene/builder.h"
 #include "isochor/effects/load.h"
@@ -57,6 +58,14 @@ class TractionEffect final : public EffectSource {
     if (has_traction && has_force) {
       return Error{"traction \"" + def_.name + "\": both traction and total_force are given; give one"};
     }
+    if (has_force && (def_.current_area || !def_.field.empty())) {
+      return Error{"traction \"" + def_.name +
+                   "\": a total_force has no current_area and no field; give a traction with them"};
+    }
+    if (def_.lagged && !def_.current_area) {
+      return Error{"traction \"" + def_.name +
+                   "\": lagged is for current_area; a traction per area at rest has no need of it"};
+    }
     return {};
   }
 
@@ -65,6 +74,7 @@ class TractionEffect final : public EffectSource {
     auto faces = builder.faces(def_.body, surface, def_.name);
     if (!faces) return faces.failure();
     const auto per = static_cast<std::size_t>(nodes_per_face(builder.body(def_.body).mesh.cell_type));
+    if (def_.current_area || !def_.field.empty()) return build_varying(builder, faces.value(), per);
     std::vector<std::pair<Index, double>> area;
     double total = 0;
     for (std::size_t f = 0; f < faces.value().size(); f += per) {
@@ -83,6 +93,22 @@ class TractionEffect final : public EffectSource {
   }
 
  private:
+  // Over a surface that is as it is, or with factors.
+  Result<std::unique_ptr<EffectInstance>> build_varying(Builder& builder, const std::vector<Index>& faces,
+                                                        std::size_t per) const {
+    const BodyData& body = builder.body(def_.body);
+    auto factors = node_factors(body.mesh, def_.field);
+    if (!factors) return Error{"traction \"" + def_.name + "\": " + factors.error()};
+    LoadedFaces loaded{faces, per, {}};
+    for (const Index node : faces)
+      loaded.traction.push_back(factors.value()[at(node - body.first_node)] * def_.traction);
+    if (!def_.current_area)
+      return add_dead_load(builder, def_.name, rest_area_forces(loaded, builder.rest()), def_.amount);
+    auto amount = std::make_shared<Amount>(def_.amount);
+    add_current_traction(builder, def_.name, loaded, def_.lagged, amount);
+    return std::unique_ptr<EffectInstance>(std::make_unique<LoadInstance>(std::move(amount)));
+  }
+
   TractionDef def_;
 };
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 
+#include "constraints/stencil/amount_row.h"
 #include "constraints/stencil/face_pool.h"
 #include "constraints/stencil/surface_nodes.h"
 #include "engine/base/fingerprint.h"
@@ -115,26 +116,6 @@ class RimPool final : public StencilPool, public LaggedStencils {
   bool couples_;
 };
 
-// The pressure as the given multiplier of all functions of a pool.
-class PressureRow final : public RowPool {
- public:
-  PressureRow(std::string name, std::shared_ptr<Amount> amount, const StencilPool& pool)
-      : name_(std::move(name)), amount_(std::move(amount)) {
-    law = RowLaw::prescribed;
-    for (Index s = 0; s < pool.stencils(); ++s) {
-      map.item.push_back(s);
-      weight.push_back(1);
-    }
-    map.offset.push_back(pool.stencils());
-  }
-  std::string_view name() const override { return name_; }
-  void update(double t, std::span<double> value) const override { value[0] = amount_->value(t); }
-
- private:
-  std::string name_;
-  std::shared_ptr<Amount> amount_;
-};
-
 // Edges that the faces run along more often one way than the other, in the direction that is left over;
 // curved ones with their middle node.
 std::vector<std::vector<Index>> rim_of(std::span<const Index> faces, std::size_t per) {
@@ -204,7 +185,7 @@ class PressureEffect final : public EffectSource {
     for (std::size_t f = 0; f < faces.size(); f += per)
       volume->add_face(std::span(faces).subspan(f, per), face_rule(per));
     volume->finish();
-    add_row(builder, volume, amount, def_.name);
+    add_given(builder, def_.name, volume, amount);
     const auto rim = rim_of(faces, per);
     const bool free_rim = std::any_of(rim.begin(), rim.end(), [&](const std::vector<Index>& edge) {
       return std::any_of(edge.begin(), edge.end(), [&](Index n) { return builder.given_directions(n) < 3; });
@@ -213,21 +194,12 @@ class PressureEffect final : public EffectSource {
       auto edges = std::make_shared<RimPool>(def_.name + "/rim", origin, free_rim && !def_.lagged);
       for (const auto& edge : rim) edges->add_edge(edge);
       edges->finish();
-      add_row(builder, edges, amount, def_.name + "/rim");
+      add_given(builder, def_.name + "/rim", edges, amount);
     }
     return std::unique_ptr<EffectInstance>(std::make_unique<PressureInstance>(def_.name, std::move(amount)));
   }
 
  private:
-  static void add_row(Builder& builder, const std::shared_ptr<const StencilPool>& pool,
-                      const std::shared_ptr<Amount>& amount, const std::string& name) {
-    auto row = std::make_shared<PressureRow>(name, amount, *pool);
-    row->stencil_pool = builder.add_stencils(pool);
-    row->metric.push_back(1);
-    row->measure.push_back(1);
-    builder.add_rows(row);
-  }
-
   PressureDef def_;
 };
 

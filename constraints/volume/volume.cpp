@@ -161,7 +161,7 @@ class VolumeEffect final : public EffectSource {
         const auto rows = nodal_volume_rows(region, equal_order ? def_.stabilization : 0, &nodes);
         if (def_.lumped_compliance) rows->lump();
         const Index pool = add(builder, rows);
-        if (region.strain == VolumeStrain::linear && def_.carries_bulk) {
+        if (region.strain == VolumeStrain::linear && def_.carries_bulk && !region.pool->growth()) {
           instance.nodal.push_back({pool, std::move(nodes)});
         }
         break;

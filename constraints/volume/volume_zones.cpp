@@ -199,6 +199,10 @@ Result<VolumeRegion> region_across(Builder& builder, const VolumeDef& def,
   for (const std::size_t r : regions) {
     const RegionData& region = body.regions[r];
     if (std::isinf(region.material->inverse_bulk()) && !def.hard) continue;
+    if (region.growth) {
+      return Error{"the rows go across regions and region \"" + region.name +
+                   "\" has growth, which they do not follow; give it rows of its own, or end the growth"};
+    }
     const VolumeStrain own = strain_in(def, *region.material);
     if (strain != VolumeStrain::by_law && strain != own) {
       return Error{

@@ -22,7 +22,9 @@ struct SolidData {
   std::vector<double> patch_share;
 };
 
-class SolidPool final : public StencilPool {
+struct Growth;
+
+class SolidPool : public StencilPool {
  public:
   // `material` may be null: volume functions alone. Energies are integrated over the points.
   // The data may be those of other pools, of clones of a world or of the scene before a change.
@@ -40,6 +42,8 @@ class SolidPool final : public StencilPool {
   double volume(Index stencil) const;
   // Mean of J - 1 over it.
   double mean_volume_strain(Index stencil, std::span<const Vec3> x, std::span<const Vec3> rest) const;
+  // Null: the mesh is free of stress (engine/elements/grown_pool.h).
+  virtual const Growth* growth() const { return nullptr; }
   // F at the points of a stencil.
   void deformation_gradient(Index stencil, int point, std::span<const Vec3> x, std::span<const Vec3> rest,
                             double F[9], double& volume_strain) const;
@@ -55,6 +59,7 @@ class SolidPool final : public StencilPool {
   void write(const StencilRequest& request, const StencilSlots& slots, const Lane& lane, double psi,
              const double* P, const double* A) const;
 
+ protected:
   std::string name_;
   std::shared_ptr<const Material> material_;
   VolumeStrain strain_;

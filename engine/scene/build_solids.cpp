@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "engine/elements/element_guard.h"
+#include "engine/elements/grown_pool.h"
 #include "engine/elements/relaxation_pool.h"
 #include "engine/elements/volume_strain.h"
 #include "engine/scene/builder.h"
@@ -20,18 +21,46 @@ Result<void> Builder::build_solids() {
   return {};
 }
 
+// The cells of the stencils of a pool, and the share of each.
+struct StencilCells {
+  Lists cells;
+  std::vector<double> weight;
+};
+static StencilCells cells_of_stencils(const SolidData& data) {
+  StencilCells out{data.patch_cells, data.patch_share};
+  if (!out.weight.empty()) return out;
+  for (const Index c : data.cell) out.cells.push({&c, 1});
+  out.weight.assign(data.cell.size(), 1.0);
+  return out;
+}
+
 // The energy of a region for the stencils of a pool: where parameters vary from cell to cell, gathered.
 static std::shared_ptr<const Material> for_stencils(std::shared_ptr<const Material> energy,
                                                     const MaterialModel& model, const SolidData& data) {
   if (!energy || model.field_cells() == 0) return energy;
-  Lists cells = data.patch_cells;
-  std::vector<double> weight = data.patch_share;
-  if (weight.empty()) {
-    for (const Index c : data.cell) cells.push({&c, 1});
-    weight.assign(data.cell.size(), 1.0);
-  }
-  auto own = energy->gathered(cells, weight);
+  const StencilCells of = cells_of_stencils(data);
+  auto own = energy->gathered(of.cells, of.weight);
   return own ? own : energy;
+}
+
+static std::shared_ptr<const SolidPool> solid_pool(std::string name, std::shared_ptr<const SolidData> data,
+                                                   std::shared_ptr<const Material> energy,
+                                                   VolumeStrain strain,
+                                                   const std::shared_ptr<const Growth>& growth) {
+  if (!growth)
+    return std::make_shared<SolidPool>(std::move(name), std::move(data), std::move(energy), strain);
+  auto own = growth;
+  if (growth->field) {
+    const StencilCells of = cells_of_stencils(*data);
+    own = growth->gathered(of.cells, of.weight);
+  }
+  return std::make_shared<GrownPool>(std::move(name), std::move(data), std::move(energy), strain,
+                                     std::move(own));
+}
+
+// Whether anything of a region varies from cell to cell.
+static bool has_fields(const RegionData& region) {
+  return region.material->field_cells() > 0 || (region.growth && region.growth->field);
 }
 
 // A barrier would falsify the true compression of a compressible material; there it acts only on tets that
@@ -66,11 +95,11 @@ static RegionStencils& stencils_at(const BodyData& body, RegionData& region) {
 
 Result<std::shared_ptr<const SolidData>> Builder::patches_of(const BodyData& body, RegionData& region) const {
   auto& kept = stencils_at(body, region).patches;
-  if (kept && region.material->field_cells() == 0) return kept;
+  if (kept && !has_fields(region)) return kept;
   auto made = edge_patch_data(parts_.rest, body.global_cells, region.cells);
   if (!made) return made.failure();
   // Where nothing varies from cell to cell, nobody asks for the cells of a patch.
-  const bool fields = region.material->field_cells() > 0;
+  const bool fields = has_fields(region);
   if (!fields) {
     made.value().patch_cells = {};
     made.value().patch_share = {};
@@ -142,8 +171,8 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
     auto patches = patches_of(body, region);
     if (!patches) return patches.failure();
     region.energy = energy = for_stencils(energy, *region.material, *patches.value());
-    region.elastic_pool = add_stencils(std::make_shared<SolidPool>(
-        body.name + "/" + region.name + "/patches", patches.value(), energy, VolumeStrain::linear));
+    region.elastic_pool = add_stencils(solid_pool(body.name + "/" + region.name + "/patches", patches.value(),
+                                                  energy, VolumeStrain::linear, region.growth));
     add_memory(body, region, patches.value());
     energy = element_guard(body, region);
   }
@@ -158,8 +187,8 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
         cells_of(body, region, !wanted ? VolumeFunctions::none : (mean ? VolumeFunctions::constant : kind));
     if (!data) return data.failure();
     if (energy && !smoothed) region.energy = energy = for_stencils(energy, *region.material, *data.value());
-    const Index pool = add_stencils(std::make_shared<SolidPool>(body.name + "/" + region.name, data.value(),
-                                                                energy, static_cast<VolumeStrain>(strain)));
+    const Index pool = add_stencils(solid_pool(body.name + "/" + region.name, data.value(), energy,
+                                               static_cast<VolumeStrain>(strain), region.growth));
     if (wanted) region.volume_pool[strain] = pool;
     if (energy && !smoothed) {
       region.elastic_pool = pool;

@@ -332,6 +332,13 @@ double Builder::length() const {
   return std::sqrt(dot(hi - lo, hi - lo));
 }
 
+bool Builder::grow(BodyId id, std::size_t region, std::shared_ptr<const Growth> growth) {
+  auto& own = bodies_[static_cast<std::size_t>(id)].regions[region].growth;
+  if (own) return false;
+  own = std::move(growth);
+  return true;
+}
+
 bool Builder::claim_bulk(BodyId id, std::size_t region) {
   bool& claimed = bodies_[static_cast<std::size_t>(id)].regions[region].bulk_claimed;
   const bool fresh = !claimed;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/elements/growth.h"
 #include "engine/elements/material_model.h"
 #include "engine/elements/reference_element.h"
 #include "engine/scene/ids.h"
@@ -97,6 +98,8 @@ class EffectInstance {
  public:
   virtual ~EffectInstance() = default;
   virtual Amount* amount() { return nullptr; }
+  // Energies read the amount themselves: it is not in targets, given multipliers or loads.
+  virtual bool amount_in_energy() const { return false; }
   virtual LivePose* pose() { return nullptr; }
   virtual void gauges(const GaugeContext& context, std::vector<Gauge>& out) const {
     (void)context;
@@ -173,7 +176,8 @@ struct RegionData {
     return std::find(volume_pool.begin(), volume_pool.end(), pool) != volume_pool.end();
   }
   RegionStencils stencils;
-  std::vector<std::uint8_t> guarded;  // by cell: 1 where the element guard acts; empty: nowhere
+  std::vector<std::uint8_t> guarded;     // by cell: 1 where the element guard acts; empty: nowhere
+  std::shared_ptr<const Growth> growth;  // by cell of the mesh; null: none
 };
 
 // Volume functions over cells of several regions, beside those of each region.
@@ -258,6 +262,8 @@ class ISOCHOR_API Builder {
   }
   // Says that rows carry the bulk modulus of the region; false when other rows already do.
   bool claim_bulk(BodyId id, std::size_t region);
+  // Says what its stress-free state is; false when somebody already has.
+  bool grow(BodyId id, std::size_t region, std::shared_ptr<const Growth> growth);
 
   // After the declarations: elastic energies and volume functions of all bodies.
   Result<void> build_solids();

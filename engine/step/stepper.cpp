@@ -189,7 +189,7 @@ Stepper::Attempt Stepper::begin(double h) {
   a.problem.mass_scale = scheme.begin(state, past, h, trial_.predicted);
   for (std::size_t i = 0; i < trial_.predicted.size() && a.jumps; ++i) trial_.predicted[i] += h * trial_.x[i];
   a.problem.predicted = trial_.predicted;
-  const bool dynamic = a.problem.mass_scale > 0;
+  const bool dynamic = dynamic_ = a.problem.mass_scale > 0;
   if (dynamic) a.problem.increment.h = h_evaluated;
   // Inertia's guess first; where it fails (it may turn elements over, or leads through a surface) the old
   // positions are a safe start.
@@ -310,7 +310,7 @@ void Stepper::take_multipliers() {
 void Stepper::take(double h, bool jumps) {
   const TimeScheme& scheme = *context_.options.scheme;
   State& state = context_.state;
-  take_memory({scheme.has_inertia() ? h : 0, state.x, state.t, state.t + h});
+  take_memory({dynamic_ ? h : 0, state.x, state.t, state.t + h});
   const auto past = context_.layout.of_scheme(state.extra);
   // No past in the increment itself, and none behind it: it would hold the velocities before the jump.
   if (jumps) std::fill(past.begin(), past.end(), 0.0);

@@ -75,6 +75,7 @@ class Stepper {
   // Increments of the step under way, on end, that each method did not solve; automatic: that of the world.
   std::array<int, 8> failures_{};
   std::string given_back_;
+  bool dynamic_ = false;  // the increment at work has inertia
   double moved_ = 0;
   std::function<void(const ProgressInfo&)> progress_;
   std::function<bool()> stop_wanted_;

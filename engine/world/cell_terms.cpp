@@ -63,6 +63,11 @@ void CellTerms::pool_forces(Index pool, const Force& visit) const {
 
 // Patches take the mean of the energies of their cells.
 Result<void> CellTerms::patch_forces(const RegionData& region, const Force& visit) const {
+  if (region.growth && (region.growth->field || region.material->field_cells() > 0)) {
+    return Error{"region \"" + region.name +
+                 "\": its growth or its material varies from cell to cell and patches grow by the mean, so "
+                 "that cells have no stiffness of their own; take constants of the material"};
+  }
   const Index pool = region.elastic_pool;
   const auto& solid = static_cast<const SolidPool&>(*system_.parts().stencil_pools[at(pool)]);
   const StencilRequest request = assembly_.request(pool, Want::gradient, x_);

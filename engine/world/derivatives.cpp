@@ -248,6 +248,10 @@ Result<std::vector<Response>> World::derivatives(std::span<const ResponseInput> 
       amount = w.instances[e]->amount();
       if (!amount)
         return Error{"derivatives: effect \"" + w.said.sources[e]->name() + "\" has no amount to change"};
+      if (w.instances[e]->amount_in_energy()) {
+        return Error{"derivatives: the amount of effect \"" + w.said.sources[e]->name() +
+                     "\" changes energies, which these do not follow; ask gradients()"};
+      }
     }
     auto response = w.derivative(d, amount, std::move(point), one.force);
     if (!response) return response.failure();

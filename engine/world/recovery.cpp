@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "engine/elements/growth.h"
 #include "engine/elements/relaxation_pool.h"
 #include "engine/elements/volume_strain.h"
 #include "engine/mesh/cell_shape.h"
@@ -17,30 +18,36 @@ namespace {
 using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
 struct PointState {
-  Matrix F = Matrix::Identity();
-  double J = 1, weight = 0;
+  Matrix F = Matrix::Identity(), elastic = F;  // F, and F_e of what has grown
+  double J = 1, elastic_J = 1, weight = 0;
   Matrix stress = Matrix::Zero();  // Cauchy, of the energy alone
 };
 
 PointState point_state(const SolidPool& pool, const Material* energy, Index stencil, int q,
-                       std::span<const Vec3> x, std::span<const Vec3> rest) {
+                       std::span<const Vec3> x, std::span<const Vec3> rest, const GrownState* grown) {
   PointState p;
   double F[9], strain = 0;
   pool.deformation_gradient(stencil, q, x, rest, F, strain);
   p.F = Eigen::Map<const Matrix>(F);
   p.J = 1 + strain;
+  p.elastic = p.F;
+  p.elastic_J = p.J;
+  if (grown) {
+    p.elastic = p.F * Eigen::Map<const Matrix>(grown->inverse);
+    p.elastic_J = p.J / grown->J;
+  }
   p.weight = pool.data().weight[at(stencil * pool.data().points + q)];
   if (!energy) return p;
   PointBatch batch;
   ResponseBatch response;
   for (int l = 0; l < kLanes; ++l) {
-    for (int i = 0; i < 9; ++i) batch.F[i][l] = F[i];
+    for (int i = 0; i < 9; ++i) batch.F[i][l] = p.elastic(i / 3, i % 3);
     batch.element[l] = stencil;
   }
   energy->evaluate(Want::gradient, batch, response);
   Matrix P;
   for (int i = 0; i < 9; ++i) P(i / 3, i % 3) = response.P[i][0];
-  p.stress = P * p.F.transpose() / p.J;
+  p.stress = P * p.elastic.transpose() / p.elastic_J;
   return p;
 }
 
@@ -77,6 +84,8 @@ void add_patch_stress(const RecoveryInput& in, const RegionData& region, std::ve
                       Fit& nodes) {
   const auto& pool = static_cast<const SolidPool&>(*in.parts.stencil_pools[at(region.elastic_pool)]);
   const auto& energy = region.energy;
+  const Growth* growth = pool.growth();
+  const double amount = growth ? growth->amount->at(in.t) : 0;
   struct Patch {
     Vec3 moment{};  // volume times centroid
     double volume = 0, row_pressure = 0;
@@ -104,7 +113,9 @@ void add_patch_stress(const RecoveryInput& in, const RegionData& region, std::ve
   }
   Index stencil = 0;
   for (auto& [edge, p] : patches) {
-    const PointState point = point_state(pool, energy.get(), stencil, 0, in.x, in.parts.rest);
+    const GrownState grown = growth ? growth->at(stencil, amount) : GrownState{};
+    const PointState point =
+        point_state(pool, energy.get(), stencil, 0, in.x, in.parts.rest, growth ? &grown : nullptr);
     p.stress = point.stress;
     if (!region.memory_pools.empty()) p.stress += memory_stress(in, region, stencil, 0, point);
     ++stencil;
@@ -130,25 +141,31 @@ double multiplier_at(const RecoveryInput& in, Index pool, Index stencil, int q) 
 }
 
 // The pressure that the multiplier of a strain makes at a point with volume ratio J.
-double pressure_of(const RecoveryInput& in, Index pool, VolumeStrain strain, Index stencil, int q, double J) {
-  const double multiplier = multiplier_at(in, pool, stencil, q);
+double pressure_of(const RecoveryInput& in, Index pool, VolumeStrain strain, Index stencil, int q, double J,
+                   const GrownState* grown) {
+  const double multiplier = multiplier_at(in, pool, stencil, q) / (grown ? std::sqrt(grown->J) : 1);
   if (!has_logarithm(strain)) return multiplier;
   const auto& solid = static_cast<const SolidPool&>(*in.parts.stencil_pools[at(pool)]);
   if (strain == VolumeStrain::logarithmic) return multiplier / J;
-  const double d = is_of_mean(strain) ? solid.mean_volume_strain(stencil, in.x, in.parts.rest) : J - 1;
+  double d = J - 1;
+  if (is_of_mean(strain)) {
+    d = solid.mean_volume_strain(stencil, in.x, in.parts.rest);
+    if (grown) d = (d - (grown->J - 1)) / grown->J;
+  }
   return multiplier * volume_response(strain, d).first;
 }
 
 // Mean pressure of the volume rows over a point.
-double row_pressure(const RecoveryInput& in, const RegionData& region, Index local, int q, double J) {
+double row_pressure(const RecoveryInput& in, const RegionData& region, Index local, int q, double J,
+                    const GrownState* grown) {
   double p = 0;
   for (std::size_t strain = 0; strain < kVolumeStrains; ++strain) {
     const Index pool = region.volume_pool[strain];
-    if (pool >= 0) p += pressure_of(in, pool, static_cast<VolumeStrain>(strain), local, q, J);
+    if (pool >= 0) p += pressure_of(in, pool, static_cast<VolumeStrain>(strain), local, q, J, grown);
   }
   for (const SpanningVolume& v : in.body.spanning) {
     const Index stencil = v.stencil_of_cell[at(region.cells[at(local)])];
-    if (stencil >= 0) p += pressure_of(in, v.pool, v.strain, stencil, q, J);
+    if (stencil >= 0) p += pressure_of(in, v.pool, v.strain, stencil, q, J, grown);
   }
   return p;
 }
@@ -162,15 +179,19 @@ void add_region(const RecoveryInput& in, const RegionData& region, std::vector<C
                        VolumeStrain::linear);
   const bool smoothed = in.body.element == Element::tet4_edge_smoothed;
   const auto energy = smoothed ? nullptr : region.energy;
+  const Growth* growth = region.growth.get();
+  const double amount = growth ? growth->amount->at(in.t) : 0;
   for (Index s = 0; s < pool.stencils(); ++s) {
     CellState& cell = cells[at(region.cells[at(s)])];
     const double volume = pool.volume(s);
     const auto of_cell = pool.nodes()[s];
+    const GrownState state = growth ? growth->at(region.cells[at(s)], amount) : GrownState{};
+    const GrownState* grown = growth ? &state : nullptr;
     for (int q = 0; q < pool.data().points; ++q) {
-      PointState p = point_state(pool, energy.get(), s, q, in.x, in.parts.rest);
+      PointState p = point_state(pool, energy.get(), s, q, in.x, in.parts.rest, grown);
       if (!smoothed && !region.memory_pools.empty()) p.stress += memory_stress(in, region, s, q, p);
       const double w = p.weight / volume;
-      const double pressure = row_pressure(in, region, s, q, p.J);
+      const double pressure = row_pressure(in, region, s, q, p.elastic_J, grown);
       cell.stress += w * p.stress;
       cell.J += w * p.J;
       cell.pressure += w * pressure;

@@ -15,6 +15,7 @@ struct RecoveryInput {
   std::span<const double> node_multiplier;
   // What pools keep between steps, by stencil pool; empty: nothing.
   std::span<const std::span<const double>> memory;
+  double t = 0;  // of the state [s]
 };
 
 // Cauchy stress of the energy plus the pressure of the rows. Edge-smoothed cells take the mean of the

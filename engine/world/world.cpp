@@ -38,7 +38,9 @@ Result<World> World::create(WorldOptions options, Host host, std::uint64_t abi) 
     return Error{
         "world: no time scheme; set WorldOptions::scheme to implicit_euler(), statics() or another of "
         "isochor/schemes.h "
-        "(generalized_alpha takes a spectral radius from 0 to 1)"};
+        "(generalized_alpha takes a spectral radius from 0 to 1, static_until a positive time and a scheme "
+        "of "
+        "dynamics other than implicit_midpoint)"};
   if (!(options.force_tolerance > 0) || !(options.row_tolerance > 0)) {
     return Error{"world: tolerances must be positive; the defaults are 1e-9 and 1e-10"};
   }

@@ -136,7 +136,7 @@ BodyFields World::fields(BodyId body) const {
   for (const auto& stencils : w.system().facets().remembering)
     memory[at(stencils.pool)] = stencils.in(w.pool_memory());
   BodyFields fields =
-      recover_fields({w.said.builder.body(body), parts, w.state.x, multipliers, nodal, memory});
+      recover_fields({w.said.builder.body(body), parts, w.state.x, multipliers, nodal, memory, w.state.t});
   add_surface_fields(w.instances, {w.system(), w.state}, w.said.builder.body(body), fields);
   return fields;
 }

@@ -2,6 +2,7 @@
 // parameters are reported there.
 #pragma once
 
+#include "isochor/effects/active.h"
 #include "isochor/effects/cable.h"
 #include "isochor/effects/cavity.h"
 #include "isochor/effects/contact.h"

@@ -36,4 +36,11 @@ ISOCHOR_API SchemePtr newmark();
 // Not for contact or other rows with bounds.
 ISOCHOR_API SchemePtr implicit_midpoint();
 
+// Statics then dynamics in one run: increments that begin before `time` [s] end in equilibrium, without
+// inertia and without damping, and leave the body at rest; from there `then` goes on. Time is seconds
+// throughout, so that loads that come gradually have curves. World::create refuses a time that is not
+// positive and a scheme without inertia or implicit_midpoint(). The time error is that of dynamics and wants
+// no control here.
+ISOCHOR_API SchemePtr static_until(double time, SchemePtr then);
+
 }  // namespace isochor

@@ -26,6 +26,13 @@ void describe_scheme(Visitor& io, AnalysisDef& a, AnalysisType standard) {
                 .least(0)
                 .most(1),
             a.spectral_radius, d.spectral_radius);
+  io.optional_number(
+      Key("static_until", "s",
+          "dynamics: [equilibria before this time](time-schemes.md#statics-then-dynamics), the "
+          "scheme from there")
+          .above(0)
+          .absent("dynamics from the start"),
+      a.static_until);
 }
 
 void describe_solving(Visitor& io, WorldOptions& options) {

@@ -1,5 +1,6 @@
 // Stencils against automatic differentiation: each kind written once more as a plain formula in hyper-dual
 // numbers, whose derivatives are exact to rounding.
+#include <Eigen/Dense>
 #include <cmath>
 #include <functional>
 
@@ -190,6 +191,116 @@ TEST_CASE("solids and their volume functions have the derivatives of their formu
                   return rows ? distortional(F) : complete(F);
                 }));
       }
+    }
+  }
+}
+
+// In F F_g^-1: energy times det F_g, volume functions times its root.
+TEST_CASE("solids that have grown have the derivatives of their formulas") {
+  // 1 + 0.7 G, as in registry_active.cpp.
+  Eigen::Matrix3d grown;
+  grown << 1.21, 0.105, 0.14, 0.105, 0.86, -0.07, 0.14, -0.07, 1.07;
+  const double size = grown.determinant();
+  const Eigen::Matrix3d inverse = grown.inverse();
+  const auto elastic = [&](const test::Gradient9& F) {
+    test::Gradient9 out;
+    for (std::size_t i = 0; i < 9; ++i) {
+      for (std::size_t k = 0; k < 3; ++k)
+        out[i] += F[3 * (i / 3) + k] *
+                  HyperDual(inverse(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i % 3)));
+    }
+    return out;
+  };
+  for (const std::string element : {"tet4", "edge-smoothed", "tet10 curved", "hex8"}) {
+    for (const std::string variant :
+         {", growth, one field", ", growth, rows at nodes, strain 0", ", growth, rows at nodes, strain 1"}) {
+      INFO(element << variant);
+      const SceneProbe scene(find_case(element + variant));
+      const bool one_field = variant.ends_with("one field"), logarithmic = variant.back() == '1';
+      for (const SolidPool* pool : pools_of<SolidPool>(scene)) {
+        INFO(pool->name());
+        REQUIRE(pool->growth() != nullptr);
+        const bool tets = element == "edge-smoothed" && !pool->name().ends_with("/patches");
+        const SolidData& data = pool->data();
+        compare(scene, *pool, [&](Index s, const std::vector<Point>& x) {
+          Values out;
+          out.function.resize(static_cast<std::size_t>(data.functions));
+          for (int q = 0; q < data.points; ++q) {
+            const Vec3* B = data.gradient.data() +
+                            static_cast<std::size_t>(data.points) * at(data.nodes.offset[at(s)]) +
+                            static_cast<std::size_t>(q) * x.size();
+            test::Gradient9 F;
+            for (std::size_t a = 0; a < x.size(); ++a) {
+              for (std::size_t i = 0; i < 9; ++i)
+                F[i] += x[a][i / 3] * HyperDual(B[a][static_cast<int>(i % 3)]);
+            }
+            const test::Gradient9 E = elastic(F);
+            const double w = data.weight[at(s * data.points + q)];
+            const HyperDual J = test::determinant(E), phi = logarithmic ? log(J) : J - HyperDual(1);
+            if (pool->has_energy())
+              out.energy += HyperDual(w * size) * (tets        ? guard(E)
+                                                   : one_field ? complete(E)
+                                                               : distortional(E));
+            for (int k = 0; k < data.functions; ++k) {
+              const double N =
+                  data.functions == 1 ? 1 : data.shape[static_cast<std::size_t>(q * data.functions + k)];
+              out.function[static_cast<std::size_t>(k)] += HyperDual(w * std::sqrt(size) * N) * phi;
+            }
+          }
+          return out;
+        });
+      }
+    }
+  }
+}
+
+TEST_CASE("muscles have the derivatives of their formulas") {
+  for (const std::string element : {"tet4", "edge-smoothed", "tet10 curved", "hex8"}) {
+    for (int variant = 0; variant < 4; ++variant) {
+      const bool current = variant >= 2, by_length = variant % 2 == 1;
+      const std::string name =
+          ", muscle, tension " + std::to_string(variant / 2) + (by_length ? ", by length" : "");
+      INFO(element << name);
+      const SceneProbe scene(find_case(element + name));
+      // The solid comes first; patches have their data.
+      const SolidData& data = pools_of<SolidPool>(scene).front()->data();
+      int found = 0;
+      for (const auto& pool : scene.system().parts().stencil_pools) {
+        if (pool->name() != "muscle") continue;
+        ++found;
+        compare(scene, *pool, [&](Index s, const std::vector<Point>& x) {
+          Values out;
+          out.function.resize(1);
+          for (int q = 0; q < data.points; ++q) {
+            const Vec3* B = data.gradient.data() +
+                            static_cast<std::size_t>(data.points) * at(data.nodes.offset[at(s)]) +
+                            static_cast<std::size_t>(q) * x.size();
+            Point f{};
+            for (std::size_t a = 0; a < x.size(); ++a) {
+              const HyperDual along((B[a].x + 2 * B[a].y + 2 * B[a].z) / 3);
+              for (std::size_t i = 0; i < 3; ++i) f[i] += x[a][i] * along;
+            }
+            const HyperDual stretch = sqrt(inner(f, f));
+            // By Simpson's rule in many pieces from 1, whose end moves with the stretch.
+            const auto pull = [&](const HyperDual& v) {
+              const HyperDual d = (v - HyperDual(1.2)) * HyperDual(1 / 0.6);
+              const HyperDual force = by_length ? HyperDual(1) - d * d : HyperDual(1);
+              return current ? force / v : force;
+            };
+            constexpr int pieces = 200;
+            HyperDual sum = pull(HyperDual(1)) + pull(stretch);
+            for (int k = 1; k < 2 * pieces; ++k) {
+              const double part = 0.5 * k / pieces;
+              sum += HyperDual(k % 2 == 1 ? 4 : 2) *
+                     pull(HyperDual(1) + HyperDual(part) * (stretch - HyperDual(1)));
+            }
+            const double w = data.weight[at(s * data.points + q)];
+            out.function[0] += HyperDual(w / (6 * pieces)) * (stretch - HyperDual(1)) * sum;
+          }
+          return out;
+        });
+      }
+      CHECK(found == 1);
     }
   }
 }

@@ -345,6 +345,7 @@ std::vector<SceneCase> scene_cases() {
   add_fields(out);
   add_skins(out);
   add_attachments(out);
+  add_active(out);
   add_worked_example(out);
   return out;
 }

@@ -22,6 +22,7 @@ const std::set<std::string> kGeneral{
     "node",    "nodes",    "patch",     "plane",   "point",    "pool",      "poses", "ratio",      "report",
     "resolve", "ring",     "rows",      "segment", "shape",    "solid",     "space", "stiffness",  "strain",
     "support", "geometry", "turning",   "surface", "threads",  "treatment", "tree",  "closed",     "law",
+    "amount",  "row",      "linear",    "growth",  "current",  // of systems, of numbers, of memory
     "volume",             // the engine's own functions of bodies (SolidPool), which rows of effects are over
     "impact",  "impacts"  // jumps of velocities, whatever makes them
 };

@@ -44,6 +44,21 @@ struct WindingDef {
 };
 ISOCHOR_API EffectPtr winding(WindingDef def);
 
+// A spring between two points of bodies, or from a point to a fixed place: the tension stiffness * (length -
+// amount * rest length) along the line between them.
+struct SpringDef {
+  std::string name = "spring";
+  BodyId body{};
+  Vec3 from{};                    // rest position in or on `body` [m]
+  std::optional<BodyId> to_body;  // the body that `to` is of; none: a fixed place
+  Vec3 to{};                      // [m]
+  double stiffness = 0;           // [N/m], positive
+  std::optional<double> length;   // without tension [m]; none: as long as it is at rest
+  bool pulls_only = false;        // a rubber band: shorter than that it is slack
+  Curve amount = Curve::constant(1);
+};
+ISOCHOR_API EffectPtr spring(SpringDef def);
+
 // Points of a helix about the axis from `start` to `end`; without turns between them, of a straight line.
 // `out` is where the first point lies from the axis; its length is the radius. Negative turns: left-handed.
 ISOCHOR_API std::vector<Vec3> helix(const Vec3& start, const Vec3& end, const Vec3& out, double turns,

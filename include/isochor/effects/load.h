@@ -12,7 +12,8 @@
 
 namespace isochor {
 
-// Dead traction [Pa] on faces (force per rest area), or a dead total force [N] spread over them.
+// Dead traction [Pa] on faces (force per rest area, or per area as it is), or a dead total force [N] spread
+// over them.
 struct TractionDef {
   std::string name = "traction";
   BodyId body{};
@@ -20,6 +21,11 @@ struct TractionDef {
   Vec3 traction{};     // [Pa]
   Vec3 total_force{};  // [N], instead of traction
   Curve amount = Curve::constant(1);
+  // A field of the mesh at nodes with one component: factors on the traction over the surface.
+  std::string field;
+  // Per area as it is: the force grows with the surface. Such a load has no potential, so that linear systems
+  // are unsymmetric; `lagged` as of a pressure.
+  bool current_area = false, lagged = false;
 };
 ISOCHOR_API EffectPtr traction(TractionDef def);
 
