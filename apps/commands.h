@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scenes/explain.h"
-#include "scenes/run.h"
+#include "scenes/run/run.h"
 
 namespace isochor::app {
 

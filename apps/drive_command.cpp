@@ -6,8 +6,8 @@
 #include "apps/commands.h"
 #include "apps/stop.h"
 #include "apps/table.h"
-#include "scenes/outputs.h"
-#include "scenes/run.h"
+#include "scenes/run/outputs.h"
+#include "scenes/run/run.h"
 #include "studies/drive/report.h"
 
 namespace isochor::app {

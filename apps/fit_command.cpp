@@ -5,7 +5,7 @@
 #include "apps/commands.h"
 #include "apps/stop.h"
 #include "apps/table.h"
-#include "scenes/outputs.h"
+#include "scenes/run/outputs.h"
 #include "studies/fit/report.h"
 
 namespace isochor::app {

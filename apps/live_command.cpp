@@ -8,7 +8,7 @@
 #ifdef ISOCHOR_HAVE_HTTPLIB
 #include "live/server.h"
 #include "live_page.h"
-#include "scenes/outputs.h"
+#include "scenes/run/outputs.h"
 #endif
 
 namespace isochor::app {

@@ -7,7 +7,7 @@
 #include "engine/solvers/linear_solver.h"
 #include "isochor/mesh_io.h"
 #include "scenes/library.h"
-#include "scenes/run.h"
+#include "scenes/run/run.h"
 #include "scenes/scene_file.h"
 
 namespace isochor::app {

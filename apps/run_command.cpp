@@ -6,10 +6,10 @@
 #include "apps/commands.h"
 #include "apps/stop.h"
 #include "apps/table.h"
-#include "scenes/accuracy.h"
 #include "scenes/library.h"
-#include "scenes/outputs.h"
-#include "scenes/run.h"
+#include "scenes/run/accuracy.h"
+#include "scenes/run/outputs.h"
+#include "scenes/run/run.h"
 #include "scenes/scene_file.h"
 
 namespace isochor::app {

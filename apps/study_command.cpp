@@ -4,7 +4,7 @@
 #include "apps/commands.h"
 #include "apps/stop.h"
 #include "apps/table.h"
-#include "scenes/outputs.h"
+#include "scenes/run/outputs.h"
 #include "studies/check.h"
 #include "studies/run_study.h"
 

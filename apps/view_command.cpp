@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "apps/commands.h"
-#include "scenes/frames_page.h"
+#include "scenes/run/frames_page.h"
 
 namespace isochor::app {
 

@@ -15,7 +15,7 @@
 #include "must.h"
 #include "options.h"
 #include "scenes/library.h"
-#include "scenes/run.h"
+#include "scenes/run/run.h"
 
 namespace {
 

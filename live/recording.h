@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "scenes/outputs.h"
+#include "scenes/run/outputs.h"
 
 namespace isochor::live {
 

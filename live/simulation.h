@@ -13,8 +13,8 @@
 #include "live/dials.h"
 #include "live/hand.h"
 #include "live/recording.h"
-#include "scenes/page_shape.h"
-#include "scenes/step_recorder.h"
+#include "scenes/run/page_shape.h"
+#include "scenes/run/step_recorder.h"
 
 namespace isochor::live {
 

@@ -1,6 +1,6 @@
 #include "scenes/body_parts.h"
 #include "scenes/effects/kind.h"
-#include "scenes/step_measures.h"
+#include "scenes/run/step_measures.h"
 
 namespace isochor {
 

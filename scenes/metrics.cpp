@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenes/run.h"
+#include "scenes/run/run.h"
 
 namespace isochor {
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <thread>
 
-#include "scenes/outputs.h"
+#include "scenes/run/outputs.h"
 #include "studies/store.h"
 
 namespace isochor::studies {

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scenes/run.h"
+#include "scenes/run/run.h"
 #include "studies/page.h"
 
 namespace isochor::studies {

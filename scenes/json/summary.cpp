@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "scenes/accuracy.h"
-#include "scenes/run.h"
+#include "scenes/run/accuracy.h"
+#include "scenes/run/run.h"
 
 namespace isochor {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <set>
 
-#include "scenes/outputs.h"
+#include "scenes/run/outputs.h"
 #include "scenes/scene_file.h"
 #include "studies/chaos/draft.h"
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <map>
 
-#include "scenes/outputs.h"
+#include "scenes/run/outputs.h"
 #include "studies/chaos/child.h"
 
 namespace isochor::studies {

@@ -1,5 +1,5 @@
 // The indicator for scenes without a reference, on scenes that have one.
-#include "scenes/accuracy.h"
+#include "scenes/run/accuracy.h"
 
 #include <cmath>
 #include <nlohmann/json.hpp>

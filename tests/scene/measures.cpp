@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
-#include "scenes/section_plane.h"
+#include "scenes/run/section_plane.h"
 #include "small_scene.h"
 
 using namespace isochor;

@@ -3,7 +3,7 @@
 
 #include "catch.h"
 #include "scenes/library.h"
-#include "scenes/run_overlays.h"
+#include "scenes/run/run_overlays.h"
 #include "small_scene.h"
 
 using namespace isochor;

@@ -8,9 +8,9 @@
 #include "constraints/contact/shape/obstacle_shape.h"
 #include "page_surface.h"
 #include "scenes/library.h"
-#include "scenes/page_shape.h"
-#include "scenes/run_overlays.h"
-#include "scenes/run_page.h"
+#include "scenes/run/page_shape.h"
+#include "scenes/run/run_overlays.h"
+#include "scenes/run/run_page.h"
 #include "small_scene.h"
 
 using namespace isochor;

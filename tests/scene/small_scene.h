@@ -8,7 +8,7 @@
 #include <sstream>
 #include <string>
 
-#include "scenes/run.h"
+#include "scenes/run/run.h"
 #include "scenes/scene_file.h"
 #include "support/files.h"
 

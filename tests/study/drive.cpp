@@ -7,7 +7,7 @@
 #include "catch.h"
 #include "isochor/gradients.h"
 #include "scenes/effects/kind.h"
-#include "scenes/run.h"
+#include "scenes/run/run.h"
 #include "scenes/scene_file.h"
 #include "studies/drive/bounded.h"
 #include "studies/drive/report.h"

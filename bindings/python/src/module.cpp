@@ -2,7 +2,7 @@
 #include <string>
 
 #include "interop.h"
-#include "scenes/run.h"
+#include "scenes/run/run.h"
 
 namespace isochor::python {
 

@@ -8,7 +8,7 @@
 #include "interruption.h"
 #include "reports.h"
 #include "scenes/library.h"
-#include "scenes/run.h"
+#include "scenes/run/run.h"
 #include "scenes/scene_file.h"
 
 namespace isochor::python {

@@ -1,10 +1,10 @@
-#include "scenes/run_page.h"
+#include "scenes/run/run_page.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "scenes/section_plane.h"
+#include "scenes/run/section_plane.h"
 
 namespace isochor {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "scenes/contact_watch.h"
 #include "scenes/probes.h"
-#include "scenes/run.h"
+#include "scenes/run/contact_watch.h"
+#include "scenes/run/run.h"
 
 namespace isochor {
 

@@ -1,4 +1,4 @@
-#include "scenes/page_shape.h"
+#include "scenes/run/page_shape.h"
 
 #include <algorithm>
 #include <cmath>

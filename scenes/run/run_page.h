@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "results_page.h"
-#include "scenes/outputs.h"
-#include "scenes/page_shape.h"
+#include "scenes/run/outputs.h"
+#include "scenes/run/page_shape.h"
 
 namespace isochor {
 

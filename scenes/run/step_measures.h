@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "scenes/run.h"
+#include "scenes/run/run.h"
 
 namespace isochor {
 

@@ -1,4 +1,4 @@
-#include "scenes/step_measures.h"
+#include "scenes/run/step_measures.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "scenes/accuracy.h"
+#include "scenes/run/accuracy.h"
 
 #include <algorithm>
 #include <cmath>

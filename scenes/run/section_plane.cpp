@@ -1,4 +1,4 @@
-#include "scenes/section_plane.h"
+#include "scenes/run/section_plane.h"
 
 #include <algorithm>
 #include <cmath>

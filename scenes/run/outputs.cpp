@@ -1,4 +1,4 @@
-#include "scenes/outputs.h"
+#include "scenes/run/outputs.h"
 
 #include <cmath>
 #include <cstdio>
@@ -6,7 +6,7 @@
 #include <set>
 
 #include "engine/base/atomic_file.h"
-#include "scenes/run_page.h"
+#include "scenes/run/run_page.h"
 #include "scenes/scene_file.h"
 
 namespace isochor {

@@ -1,4 +1,4 @@
-#include "scenes/contact_watch.h"
+#include "scenes/run/contact_watch.h"
 
 #include <cmath>
 #include <limits>

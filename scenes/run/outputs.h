@@ -5,7 +5,7 @@
 #include <string>
 
 #include "isochor/mesh_io.h"
-#include "scenes/run_checkpoint.h"
+#include "scenes/run/run_checkpoint.h"
 
 namespace isochor {
 

@@ -1,4 +1,4 @@
-#include "scenes/frames_page.h"
+#include "scenes/run/frames_page.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -13,7 +13,7 @@
 #include "isochor/mesh_io.h"
 #include "page_surface.h"
 #include "results_page.h"
-#include "scenes/run.h"
+#include "scenes/run/run.h"
 
 namespace isochor {
 

@@ -1,4 +1,4 @@
-#include "scenes/run.h"
+#include "scenes/run/run.h"
 
 #include <sys/resource.h>
 
@@ -10,9 +10,9 @@
 
 #include "engine/base/text.h"
 #include "scenes/law_limits.h"
-#include "scenes/outputs.h"
+#include "scenes/run/outputs.h"
+#include "scenes/run/step_recorder.h"
 #include "scenes/scene_file.h"
-#include "scenes/step_recorder.h"
 
 namespace isochor {
 

@@ -1,4 +1,4 @@
-#include "scenes/run_overlays.h"
+#include "scenes/run/run_overlays.h"
 
 #include <algorithm>
 #include <array>

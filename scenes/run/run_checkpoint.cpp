@@ -1,4 +1,4 @@
-#include "scenes/run_checkpoint.h"
+#include "scenes/run/run_checkpoint.h"
 
 #include <cerrno>
 #include <cstddef>

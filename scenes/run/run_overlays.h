@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "results_page.h"
-#include "scenes/outputs.h"
 #include "scenes/probes.h"
+#include "scenes/run/outputs.h"
 
 namespace isochor {
 

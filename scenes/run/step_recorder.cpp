@@ -1,7 +1,7 @@
-#include "scenes/step_recorder.h"
+#include "scenes/run/step_recorder.h"
 
 #include "engine/base/text.h"
-#include "scenes/step_measures.h"
+#include "scenes/run/step_measures.h"
 
 namespace isochor {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "results_page.h"
-#include "scenes/outputs.h"
-#include "scenes/run_overlays.h"
+#include "scenes/run/outputs.h"
+#include "scenes/run/run_overlays.h"
 
 namespace isochor {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scenes/run.h"
+#include "scenes/run/run.h"
 
 namespace isochor {
 
