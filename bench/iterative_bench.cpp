@@ -96,7 +96,7 @@ bool run_apart(Solver solver, const char* name, int width, VolumeSpace space) {
   };
   const double cpu = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   std::printf(
-      "%-10s %8d tets %8d unknowns  %2d Newton %5d MINRES %d mended  total %7.1f s  cpu %7.1f s  setup or "
+      "%-10s %8d tets %8d unknowns  %2d Newton %5d Krylov %d mended  total %7.1f s  cpu %7.1f s  setup or "
       "factor %7.1f s  "
       "solve %7.1f s  peak %6.2f GiB  lowest z %.9f%s\n",
       name, out.cells, out.unknowns, out.newton, out.linear, out.shifted, out.total, cpu, out.factor,

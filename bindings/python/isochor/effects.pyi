@@ -21,6 +21,8 @@ class Effect:
 _Zone = TypedDict("_Zone", {"name": str, "regions": _Names, "cells": ArrayLike, "boxes": ArrayLike, "field": str, "compliance": float}, total=False)
 _Rotation = TypedDict("_Rotation", {"point": ArrayLike, "axis": ArrayLike, "angle": float, "angle_deg": float}, total=False)
 _Keyframe = TypedDict("_Keyframe", {"t": float, "position": ArrayLike, "turn": ArrayLike}, total=False)
+_SkinBone = TypedDict("_SkinBone", {"motion": str, "keyframes": Sequence["_Keyframe"], "weights": ArrayLike, "field": str}, total=False)
+_Term = TypedDict("_Term", {"body": str, "point": ArrayLike, "direction": ArrayLike, "weight": float}, total=False)
 _Obstacle = TypedDict("_Obstacle", {"shape": Literal["plane", "sphere", "capsule", "cylinder", "box", "mesh", "distance_field"], "position": ArrayLike, "axis": ArrayLike, "side": ArrayLike, "radius": float, "length": float, "size": ArrayLike, "rounding": float, "file": str, "scale": float, "spacing": float, "motion": str, "keyframes": Sequence["_Keyframe"]}, total=False)
 
 def arguments(kind: str) -> list[tuple[Any, bool]]: ...
@@ -77,6 +79,55 @@ def volume(
         how the linear systems take the rows: "automatic", "saddle", "condensed", "bordered", "dual", "augmented" (default: "automatic")
     lumped_compliance:
         rows at nodes with their compliance on the diagonal, without stabilization (default: false)
+
+    Amounts are numbers, or points [(time, value), ...] in between which they are linear. Returns an
+    Effect for ``World.add``. Raises isochor.Error for keys that there are not; values are looked at when
+    the effect is added.
+    """
+
+def growth(
+    body: Union[Body, str, None] = ...,
+    *,
+    name: Union[str, None] = ...,
+    regions: Union[_Names, None] = ...,
+    linear: float = ...,
+    volume: float = ...,
+    along: float = ...,
+    across: float = ...,
+    direction: ArrayLike = ...,
+    strain: Union[ArrayLike, None] = ...,
+    field: Union[str, None] = ...,
+    factors: Union[ArrayLike, None] = ...,
+    amount: _Amount = ...,
+) -> Effect:
+    """A stress-free state that is not that of the mesh: swelling, thermal expansion, growth, prestrain, see growth.
+
+    Parameters
+    ----------
+    body:
+        A body of the world, or its name; None: the first.
+    name:
+        of the effect; all effects of a world share one set of names (default: one is found)
+    regions:
+        that grow (default: all)
+    linear:
+        strain in all directions at amount 1 (default: 0)
+    volume:
+        instead: change of volume over volume at amount 1 (default: 0)
+    along:
+        instead: strain along direction at amount 1 (default: 0)
+    across:
+        strain across it (default: 0)
+    direction:
+        of along (default: [1, 0, 0])
+    strain:
+        instead: xx, yy, zz, xy, yz, zx at amount 1, or six numbers a cell
+    field:
+        of the mesh in cells: factors on the strain, or strains with six components
+    factors:
+        on the strain, one a cell
+    amount:
+        scales the strain over time, a temperature for example (default: 1)
 
     Amounts are numbers, or points [(time, value), ...] in between which they are linear. Returns an
     Effect for ``World.add``. Raises isochor.Error for keys that there are not; values are looked at when
@@ -147,6 +198,80 @@ def dirichlet(
     the effect is added.
     """
 
+def driven(
+    body: Union[Body, str, None] = ...,
+    *,
+    name: Union[str, None] = ...,
+    file: Union[str, None] = ...,
+    nodes: Union[ArrayLike, None] = ...,
+    times: Union[ArrayLike, None] = ...,
+    positions: Union[Sequence[ArrayLike], None] = ...,
+) -> Effect:
+    """Nodes that follow data, see data.
+
+    Parameters
+    ----------
+    body:
+        A body of the world, or its name; None: the first.
+    name:
+        of the effect; all effects of a world share one set of names (default: one is found)
+    file:
+        of lines t, node, x, y, z: frame after frame with the same nodes
+    nodes:
+        instead of a file: of the body's mesh, counted from 0
+    times:
+        [s] of the frames; statics: load factor
+    positions:
+        [m] [[point, point, ...], ...]: a list a frame, a point a node
+
+    Amounts are numbers, or points [(time, value), ...] in between which they are linear. Returns an
+    Effect for ``World.add``. Raises isochor.Error for keys that there are not; values are looked at when
+    the effect is added.
+    """
+
+def skin(
+    body: Union[Body, str, None] = ...,
+    *,
+    name: Union[str, None] = ...,
+    surfaces: Union[_Names, None] = ...,
+    regions: Union[_Names, None] = ...,
+    node_sets: Union[_Names, None] = ...,
+    nodes: Union[ArrayLike, None] = ...,
+    boxes: Union[ArrayLike, None] = ...,
+    nearest: Union[ArrayLike, None] = ...,
+    everything: bool = ...,
+    bones: Union[Sequence["_SkinBone"], None] = ...,
+) -> Effect:
+    """Nodes that follow several bones by weights, see skins.
+
+    Parameters
+    ----------
+    body:
+        A body of the world, or its name; None: the first.
+    name:
+        of the effect; all effects of a world share one set of names (default: one is found)
+    surfaces:
+        of the mesh or of the body
+    regions:
+        of the mesh
+    node_sets:
+        of the mesh or of the body
+    nodes:
+        of the body's mesh, counted from 0
+    boxes:
+        [m] [[lower, upper], ...], rest positions
+    nearest:
+        [m] the node nearest to each point
+    everything:
+        all nodes of the body (default: false)
+    bones:
+        that they follow
+
+    Amounts are numbers, or points [(time, value), ...] in between which they are linear. Returns an
+    Effect for ``World.add``. Raises isochor.Error for keys that there are not; values are looked at when
+    the effect is added.
+    """
+
 def traction(
     body: Union[Body, str, None] = ...,
     *,
@@ -154,9 +279,12 @@ def traction(
     surface: Union[str, None] = ...,
     traction: ArrayLike = ...,
     total_force: ArrayLike = ...,
+    field: Union[str, None] = ...,
+    current_area: bool = ...,
+    lagged: bool = ...,
     amount: _Amount = ...,
 ) -> Effect:
-    """A dead load on faces, see loads.
+    """A load on faces that keeps its direction, see loads.
 
     Parameters
     ----------
@@ -170,6 +298,12 @@ def traction(
         [Pa] force per area at rest (default: [0, 0, 0])
     total_force:
         [N] instead of traction (default: [0, 0, 0])
+    field:
+        of the mesh at nodes with one component: factors on the traction
+    current_area:
+        per area as it is, not at rest (default: false)
+    lagged:
+        of current_area: hold the area within an iteration, for symmetric systems (default: false)
     amount:
         scales it over time (default: 1)
 
@@ -274,6 +408,49 @@ def damping(
         [Pa s] Kelvin-Voigt; >= 0 (default: 0)
     mass_rate:
         [1/s] drag over momentum; >= 0 (default: 0)
+
+    Amounts are numbers, or points [(time, value), ...] in between which they are linear. Returns an
+    Effect for ``World.add``. Raises isochor.Error for keys that there are not; values are looked at when
+    the effect is added.
+    """
+
+def muscle(
+    body: Union[Body, str, None] = ...,
+    *,
+    name: Union[str, None] = ...,
+    regions: Union[_Names, None] = ...,
+    direction: ArrayLike = ...,
+    directions: Union[ArrayLike, None] = ...,
+    field: Union[str, None] = ...,
+    amount: Union[_Amount, None] = ...,
+    tension: Literal["nominal", "current"] = ...,
+    optimal_stretch: float = ...,
+    width: float = ...,
+) -> Effect:
+    """Active stress along fibers, see muscle.
+
+    Parameters
+    ----------
+    body:
+        A body of the world, or its name; None: the first.
+    name:
+        of the effect; all effects of a world share one set of names (default: one is found)
+    regions:
+        that pull (default: all)
+    direction:
+        of the fibers at rest (default: [1, 0, 0])
+    directions:
+        instead: one a cell of the body's mesh
+    field:
+        instead: of the mesh in cells, with three components
+    amount:
+        [Pa] the active stress; positive pulls (default: 0, or 1 where it is a ratio or what was supplied)
+    tension:
+        the stress is per area at rest, or as it is: "nominal", "current" (default: "nominal")
+    optimal_stretch:
+        of the fibers where the muscle is strongest; > 0 (default: 1)
+    width:
+        how far from there it pulls; 0: everywhere alike; >= 0 (default: 0)
 
     Amounts are numbers, or points [(time, value), ...] in between which they are linear. Returns an
     Effect for ``World.add``. Raises isochor.Error for keys that there are not; values are looked at when
@@ -484,6 +661,46 @@ def winding(
     the effect is added.
     """
 
+def spring(
+    body: Union[Body, str, None] = ...,
+    *,
+    name: Union[str, None] = ...,
+    from_: Union[ArrayLike, None] = ...,
+    to_body: Union[str, None] = ...,
+    to: Union[ArrayLike, None] = ...,
+    stiffness: Union[float, None] = ...,
+    length: Union[float, None] = ...,
+    pulls_only: bool = ...,
+    amount: _Amount = ...,
+) -> Effect:
+    """Between two points of bodies or to a fixed place, see springs.
+
+    Parameters
+    ----------
+    body:
+        A body of the world, or its name; None: the first.
+    name:
+        of the effect; all effects of a world share one set of names (default: one is found)
+    from_:
+        [m] in or on the body at rest
+    to_body:
+        the body that to is of (default: a fixed place)
+    to:
+        [m] the other end
+    stiffness:
+        [N/m] force over length; > 0
+    length:
+        [m] without tension; >= 0 (default: as at rest)
+    pulls_only:
+        slack where it is shorter (default: false)
+    amount:
+        factor on the length without tension over time (default: 1)
+
+    Amounts are numbers, or points [(time, value), ...] in between which they are linear. Returns an
+    Effect for ``World.add``. Raises isochor.Error for keys that there are not; values are looked at when
+    the effect is added.
+    """
+
 def layer(
     body: Union[Body, str, None] = ...,
     *,
@@ -509,6 +726,34 @@ def layer(
         strain that is free; >= 0 (default: 0)
     pulls_only:
         false: it resists shortening too (default: true)
+
+    Amounts are numbers, or points [(time, value), ...] in between which they are linear. Returns an
+    Effect for ``World.add``. Raises isochor.Error for keys that there are not; values are looked at when
+    the effect is added.
+    """
+
+def linear_constraint(
+    *,
+    name: Union[str, None] = ...,
+    terms: Union[Sequence["_Term"], None] = ...,
+    stiffness: float = ...,
+    value: float = ...,
+    amount: _Amount = ...,
+) -> Effect:
+    """An equation between displacements of points, see linear constraints.
+
+    Parameters
+    ----------
+    name:
+        of the effect; all effects of a world share one set of names (default: one is found)
+    terms:
+        whose sum is given
+    stiffness:
+        [N/m] of a spring on the sum; 0: hard; >= 0 (default: 0)
+    value:
+        [m] what the sum is at amount 1 (default: 0)
+    amount:
+        scales it over time (default: 1)
 
     Amounts are numbers, or points [(time, value), ...] in between which they are linear. Returns an
     Effect for ``World.add``. Raises isochor.Error for keys that there are not; values are looked at when
