@@ -74,7 +74,7 @@ target_link_libraries(isochor_mesh_files PUBLIC isochor_mesh PRIVATE pugixml::pu
 
 isochor_sources(_solvers engine/solvers engine/solvers/front engine/solvers/iterative engine/solvers/foreign)
 isochor_module(solvers ${_solvers})
-target_link_libraries(isochor_solvers PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen> Threads::Threads ${CMAKE_DL_LIBS})
+target_link_libraries(isochor_solvers PUBLIC isochor_base PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen> Threads::Threads ${CMAKE_DL_LIBS})
 foreach(backend MUMPS CHOLMOD METIS)
   if(ISOCHOR_HAVE_${backend})
     target_compile_definitions(isochor_solvers PRIVATE ISOCHOR_HAVE_${backend})

@@ -15,17 +15,19 @@ const std::vector<std::string> kGuarded{"engine/base",  "engine/math", "engine/s
                                         "engine/solve", "engine/step", "integrators"};
 
 // Words that effects share with the engine: each means something there without any effect.
-const std::set<std::string> kGeneral{
-    "body",    "box",      "control",   "coupled", "coupling", "damping",   "def",   "distance",   "edge",
-    "edges",   "element",  "intrusion", "effect",  "field",    "force",     "frame", "face",       "initial",
-    "lagged",  "length",   "limit",     "loads",   "memory",   "mesh",      "moved", "multiplier", "network",
-    "node",    "nodes",    "patch",     "plane",   "point",    "pool",      "poses", "ratio",      "report",
-    "resolve", "ring",     "rows",      "segment", "shape",    "solid",     "space", "stiffness",  "strain",
-    "support", "geometry", "turning",   "surface", "threads",  "treatment", "tree",  "closed",     "law",
-    "amount",  "row",      "linear",    "growth",  "current",  // of systems, of numbers, of memory
-    "volume",             // the engine's own functions of bodies (SolidPool), which rows of effects are over
-    "impact",  "impacts"  // jumps of velocities, whatever makes them
-};
+const std::set<std::string>
+    kGeneral{
+        "body",    "box",        "control",   "coupled",    "coupling", "damping", "def",      "distance",
+        "edge",    "edges",      "element",   "intrusion",  "effect",   "field",   "force",    "frame",
+        "face",    "initial",    "lagged",    "length",     "limit",    "loads",   "memory",   "mesh",
+        "moved",   "multiplier", "network",   "node",       "nodes",    "patch",   "plane",    "point",
+        "pool",    "poses",      "ratio",     "report",     "resolve",  "ring",    "rows",     "segment",
+        "shape",   "solid",      "space",     "stiffness",  "strain",   "support", "geometry", "turning",
+        "surface", "threads",    "treatment", "tree",       "closed",   "law",     "amount",   "row",
+        "linear",  "growth",     "current",   "constraint",  // of systems, of numbers, of memory
+        "volume",  // the engine's own functions of bodies (SolidPool), which rows of effects are over
+        "impact",  "impacts"  // jumps of velocities, whatever makes them
+    };
 
 // Identifiers that hold a word of an effect and yet name none.
 const std::set<std::string> kNamesNone{"sees_rigid_motion"};
