@@ -4,35 +4,11 @@
 #include <cmath>
 
 #include "constraints/stencil/amount_row.h"
+#include "constraints/stencil/held_function.h"
 
 namespace isochor {
 
 namespace {
-
-// Points of a flat triangle that integrate a traction which varies along it: those of a curved one.
-FaceRule make_varying_triangle() {
-  const FaceRule& six = triangle6_rule();
-  FaceRule r;
-  r.nodes = 3;
-  r.points = six.points;
-  r.weight = six.weight;
-  const auto straight = [&](const std::vector<double>& n, std::vector<double>& out) {
-    for (std::size_t q = 0; q < static_cast<std::size_t>(six.points); ++q) {
-      const double* s = n.data() + 6 * q;
-      out.insert(out.end(),
-                 {s[0] + 0.5 * (s[3] + s[5]), s[1] + 0.5 * (s[3] + s[4]), s[2] + 0.5 * (s[4] + s[5])});
-    }
-  };
-  straight(six.N, r.N);
-  straight(six.N_u, r.N_u);
-  straight(six.N_v, r.N_v);
-  return r;
-}
-
-const FaceRule& varying_rule(std::size_t nodes) {
-  static const FaceRule triangle = make_varying_triangle();
-  return nodes == 3 ? triangle : face_rule(nodes);
-}
 
 // The function of a face is -c(held) . x with c_a the integral of N_a t over its area as it is held, so that
 // with the amount as multiplier its forces are amount * c. Such a load has no potential: what the area adds
@@ -41,7 +17,7 @@ class CurrentTractionPool final : public StencilPool, public LaggedStencils {
  public:
   CurrentTractionPool(std::string name, const LoadedFaces& loaded, bool couples)
       : name_(std::move(name)),
-        rule_(varying_rule(loaded.per)),
+        rule_(varying_face_rule(loaded.per)),
         traction_(loaded.traction),
         couples_(couples) {
     for (std::size_t f = 0; f < loaded.count(); ++f)
@@ -58,7 +34,6 @@ class CurrentTractionPool final : public StencilPool, public LaggedStencils {
     const std::size_t n = static_cast<std::size_t>(rule_.nodes);
     for (Index s = request.begin; s < request.end; ++s) {
       const auto nodes = nodes_[s];
-      const std::size_t first = at(nodes_.offset[at(s)]);
       std::array<Vec3, 6> c{};
       visit(s, held,
             [&](double w, const double* N, const double*, const double*, const Vec3& t, const Vec3& u,
@@ -66,20 +41,8 @@ class CurrentTractionPool final : public StencilPool, public LaggedStencils {
               const double area = w * norm(cross(u, v));
               for (std::size_t a = 0; a < n; ++a) c[a] -= (area * N[a]) * t;
             });
-      slots.energy[at(s)] = 0;
-      double value = 0;
-      for (std::size_t a = 0; a < n; ++a)
-        value += dot(c[a], request.x[at(nodes[a])] - request.rest[at(nodes[a])]);
-      slots.value[at(s)] = value;
-      if (request.want == Want::value) continue;
-      const double amount = request.function_multiplier[at(s)];
-      for (std::size_t a = 0; a < n; ++a) {
-        slots.jacobian[first + a] = c[a];
-        slots.gradient[first + a] = amount * c[a];
-      }
-      // Linear in the positions; the places are for what the lag adds.
-      if (request.want == Want::hessian)
-        std::fill_n(slots.hessian.data() + hessian_offset()[at(s)], n * (n + 1) / 2, Mat3{});
+      write_held_function(request, slots, *this, s, c.data(),
+                          [&](std::size_t a) { return request.rest[at(nodes[a])]; });
     }
   }
 
@@ -144,7 +107,7 @@ Result<std::vector<double>> node_factors(const Mesh& mesh, const std::string& fi
 }
 
 std::vector<std::pair<Index, Vec3>> rest_area_forces(const LoadedFaces& faces, std::span<const Vec3> rest) {
-  const FaceRule& rule = varying_rule(faces.per);
+  const FaceRule& rule = varying_face_rule(faces.per);
   const std::size_t n = faces.per;
   std::vector<std::pair<Index, Vec3>> out;
   for (std::size_t f = 0; f < faces.count(); ++f) {

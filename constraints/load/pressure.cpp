@@ -4,6 +4,7 @@
 
 #include "constraints/stencil/amount_row.h"
 #include "constraints/stencil/face_pool.h"
+#include "constraints/stencil/held_function.h"
 #include "constraints/stencil/surface_nodes.h"
 #include "engine/base/fingerprint.h"
 #include "engine/scene/builder.h"
@@ -54,25 +55,12 @@ class RimPool final : public StencilPool, public LaggedStencils {
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override {
     const std::span<const Vec3> held = request.lag.x.empty() ? request.rest : request.lag.x;
     for (Index e = request.begin; e < request.end; ++e) {
-      const auto nodes = nodes_[e];
-      const std::size_t n = nodes.size(), first = at(nodes_.offset[at(e)]);
+      const std::size_t n = nodes_[e].size();
       std::array<Vec3, 3> c{};
       visit(e, held, [&](double w, const double* N, const double*, const Vec3& y, const Vec3& d) {
         for (std::size_t a = 0; a < n; ++a) c[a] += w * N[a] * cross(y, d);
       });
-      slots.energy[at(e)] = 0;
-      double value = 0;
-      for (std::size_t a = 0; a < n; ++a) value += dot(c[a], request.x[at(nodes[a])] - origin_);
-      slots.value[at(e)] = value;
-      if (request.want == Want::value) continue;
-      const double sigma = request.function_multiplier[at(e)];
-      for (std::size_t a = 0; a < n; ++a) {
-        slots.jacobian[first + a] = c[a];
-        slots.gradient[first + a] = sigma * c[a];
-      }
-      // Linear in the positions; the places are for what the lag adds.
-      if (request.want == Want::hessian)
-        std::fill_n(slots.hessian.data() + hessian_offset()[at(e)], n * (n + 1) / 2, Mat3{});
+      write_held_function(request, slots, *this, e, c.data(), [&](std::size_t) { return origin_; });
     }
   }
 

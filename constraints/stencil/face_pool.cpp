@@ -78,23 +78,37 @@ FaceRule make_quadrangle4() {
   return r;
 }
 
-// The six-node face (apex, a, b; apex-a, ab, b-apex) with the two straight mid-nodes tied to their ends.
-FaceRule make_cap4() {
+// The points of a six-node face for one whose nodes are among its own: `tie` makes the values of these of
+// those of the six, all 6 (a_0, a_1, a_2; middles of 01, 12, 20).
+template <class Tie>
+FaceRule tied_six(int nodes, Tie tie) {
   const FaceRule& six = triangle6_rule();
   FaceRule r;
-  r.nodes = 4;
+  r.nodes = nodes;
   r.points = six.points;
   r.weight = six.weight;
-  const auto tie = [&](const std::vector<double>& n, std::vector<double>& out) {
-    for (int q = 0; q < six.points; ++q) {
-      const double* s = n.data() + static_cast<std::size_t>(6 * q);
-      out.insert(out.end(), {s[0] + 0.5 * (s[3] + s[5]), s[1] + 0.5 * s[3], s[2] + 0.5 * s[5], s[4]});
-    }
+  const auto all = [&](const std::vector<double>& n, std::vector<double>& out) {
+    for (int q = 0; q < six.points; ++q) tie(n.data() + static_cast<std::size_t>(6 * q), out);
   };
-  tie(six.N, r.N);
-  tie(six.N_u, r.N_u);
-  tie(six.N_v, r.N_v);
+  all(six.N, r.N);
+  all(six.N_u, r.N_u);
+  all(six.N_v, r.N_v);
   return r;
+}
+
+// Its edges are straight.
+FaceRule make_varying_triangle() {
+  return tied_six(3, [](const double* s, std::vector<double>& out) {
+    out.insert(out.end(),
+               {s[0] + 0.5 * (s[3] + s[5]), s[1] + 0.5 * (s[3] + s[4]), s[2] + 0.5 * (s[4] + s[5])});
+  });
+}
+
+// The six-node face (apex, a, b; apex-a, ab, b-apex) with the two straight mid-nodes tied to their ends.
+FaceRule make_cap4() {
+  return tied_six(4, [](const double* s, std::vector<double>& out) {
+    out.insert(out.end(), {s[0] + 0.5 * (s[3] + s[5]), s[1] + 0.5 * s[3], s[2] + 0.5 * s[5], s[4]});
+  });
 }
 
 // A cap whose apex is the first end of its curved edge.
@@ -194,6 +208,11 @@ const FaceRule& quadrangle4_rule() {
 const FaceRule& face_rule(std::size_t nodes) {
   return nodes == 3 ? triangle3_rule() : (nodes == 4 ? quadrangle4_rule() : triangle6_rule());
 }
+const FaceRule& varying_face_rule(std::size_t nodes) {
+  static const FaceRule triangle = make_varying_triangle();
+  return nodes == 3 ? triangle : face_rule(nodes);
+}
+
 const FaceRule& cap4_rule() {
   static const FaceRule rule = make_cap4();
   return rule;

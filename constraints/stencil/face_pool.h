@@ -21,6 +21,8 @@ const FaceRule& triangle6_rule();
 const FaceRule& quadrangle4_rule();
 // The rule for the faces of a mesh, by their number of nodes.
 const FaceRule& face_rule(std::size_t nodes);
+// As that, with points enough on a triangle for what varies along it.
+const FaceRule& varying_face_rule(std::size_t nodes);
 // A flat cap next to a curved edge: nodes (apex, a, b, middle of ab); the edges to the apex are straight.
 const FaceRule& cap4_rule();
 // What lies between a curved edge (a, b, middle) and its chord.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/elements/contraction.h"
+#include "engine/elements/solid_point.h"
 #include "engine/elements/volume_strain.h"
 
 namespace isochor {
@@ -32,48 +32,10 @@ void times(const double A[9], const double B[9], double C[9]) {
   }
 }
 
-// dJ/dF, row-major.
-void cofactor(const double F[9], double g[9]) {
-  for (int i = 0; i < 3; ++i) {
-    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
-    for (int j = 0; j < 3; ++j) {
-      const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-      g[3 * i + j] = F[3 * i1 + j1] * F[3 * i2 + j2] - F[3 * i1 + j2] * F[3 * i2 + j1];
-    }
-  }
-}
-
-// Adds first * d2J/dF2 + second * dJ dJ^T.
-void add_volume_hessian(const double F[9], const double g[9], double first, double second, double A[45]) {
-  for (std::size_t i = 0; i < 9; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      A[packed(i, j)] += second * g[i] * g[j];
-      const std::size_t row = i / 3, col = i % 3, row2 = j / 3, col2 = j % 3;
-      if (row == row2 || col == col2) continue;
-      const bool even = ((row + 1) % 3 == row2) == ((col + 1) % 3 == col2);
-      A[packed(i, j)] += (even ? first : -first) * F[3 * (3 - row - row2) + (3 - col - col2)];
-    }
-  }
-}
-
 }  // namespace
 
 double GrownPool::grown_mean(Index stencil, const GrownState& grown, const StencilRequest& request) const {
   return (mean_volume_strain(stencil, request.x, request.rest) - (grown.J - 1)) / grown.J;
-}
-
-void GrownPool::clear(const StencilRequest& request, const StencilSlots& slots) const {
-  const std::size_t functions = static_cast<std::size_t>(data_.functions);
-  for (Index s = request.begin; s < request.end; ++s) {
-    const std::size_t n = nodes_[s].size(), first = at(nodes_.offset[at(s)]);
-    slots.energy[at(s)] = 0;
-    std::fill_n(slots.value.data() + at(s) * functions, functions, 0.0);
-    if (request.want == Want::value) continue;
-    std::fill_n(slots.gradient.data() + first, n, Vec3{});
-    std::fill_n(slots.jacobian.data() + first * functions, n * functions, Vec3{});
-    if (request.want == Want::hessian)
-      std::fill_n(slots.hessian.data() + hessian_offset()[at(s)], n * (n + 1) / 2, Mat3{});
-  }
 }
 
 void GrownPool::evaluate(const StencilRequest& request, const StencilSlots& slots) const {
@@ -153,24 +115,15 @@ void GrownPool::flush(const StencilRequest& request, const StencilSlots& slots, 
   }
 }
 
-// As that of solids that have not grown, in F_e: F_g is given, so that what is definite in F_e is so in x.
+// In F_e: F_g is given, so that what is definite in F_e is so in x.
 void GrownPool::definite_hessian(const StencilRequest& request, const Lane* lanes, int count,
                                  const PointBatch& batch, ResponseBatch& response) const {
-  Lanes F[9], A[45], G = {}, H = {};
-  for (int i = 0; i < 9; ++i) F[i] = load(batch.F[i]);
+  Lanes first = {}, second = {};
   for (int l = 0; l < count; ++l) {
-    G[l] = lanes[l].sigma * lanes[l].phi.second;
-    H[l] = lanes[l].sigma * lanes[l].phi.first;
+    first[l] = lanes[l].sigma * lanes[l].phi.first;
+    second[l] = lanes[l].sigma * lanes[l].phi.second;
   }
-  Svd3 svd;
-  svd3(F, svd);
-  Spectrum spectrum = {};
-  if (material_) material_->spectrum(batch, svd, spectrum);
-  add_volume(svd, G, H, spectrum);
-  make_definite(request.definiteness, spectrum);
-  assemble(svd, spectrum, A);
-  for (int i = 0; i < 45; ++i) store(A[i], response.A[i]);
-  if (material_) material_->add_anisotropic(request.definiteness, batch, response);
+  definite_point_hessian(request.definiteness, material_.get(), batch, first, second, response);
 }
 
 void GrownPool::write(const StencilRequest& request, const StencilSlots& slots, const Lane& lane, double psi,
@@ -225,15 +178,7 @@ void GrownPool::add_bending(const StencilRequest& request, const StencilSlots& s
     c = request.definiteness == Definiteness::absolute ? -c : 0;
   const std::size_t n = nodes_[stencil].size();
   const Vec3* d = slots.jacobian.data() + at(nodes_.offset[s]);
-  Mat3* blocks = slots.hessian.data() + hessian_offset()[s];
-  for (std::size_t a = 0; a < n; ++a) {
-    for (std::size_t b = 0; b <= a; ++b) {
-      Mat3& block = blocks[a * (a + 1) / 2 + b];
-      for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) block(i, j) += c * d[a][i] * d[b][j];
-      }
-    }
-  }
+  add_outer_products(c, d, n, slots.hessian.data() + hessian_offset()[s]);
 }
 
 }  // namespace isochor

@@ -25,7 +25,6 @@ class GrownPool final : public SolidPool {
 
  private:
   struct Lane;
-  void clear(const StencilRequest& request, const StencilSlots& slots) const;
   void flush(const StencilRequest& request, const StencilSlots& slots, const Lane* lanes, int count) const;
   void definite_hessian(const StencilRequest& request, const Lane* lanes, int count, const PointBatch& batch,
                         ResponseBatch& response) const;

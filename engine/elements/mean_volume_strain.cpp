@@ -1,5 +1,6 @@
 // Volume strains of the mean of J over a cell. In a file of its own: what pools without them compute stays,
 // to the bit, what it is without this code beside it.
+#include "engine/elements/solid_point.h"
 #include "engine/elements/solid_pool.h"
 #include "engine/elements/volume_strain.h"
 
@@ -30,15 +31,7 @@ void SolidPool::add_bending_of_mean(const StencilRequest& request, const Stencil
       c = request.definiteness == Definiteness::absolute ? -c : 0;
     const std::size_t n = nodes_[s].size();
     const Vec3* d = slots.jacobian.data() + at(nodes_.offset[at(s)]);
-    Mat3* blocks = slots.hessian.data() + hessian_offset()[at(s)];
-    for (std::size_t b = 0; b < n; ++b) {
-      for (std::size_t a = b; a < n; ++a) {
-        double* block = blocks[a * (a + 1) / 2 + b].m.data();
-        for (std::size_t e = 0; e < 9; ++e) {
-          block[e] += c * d[a][static_cast<int>(e / 3)] * d[b][static_cast<int>(e % 3)];
-        }
-      }
-    }
+    add_outer_products(c, d, n, slots.hessian.data() + hessian_offset()[at(s)]);
   }
 }
 

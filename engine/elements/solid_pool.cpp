@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/elements/contraction.h"
+#include "engine/elements/solid_point.h"
 #include "engine/elements/volume_strain.h"
 
 namespace isochor {
@@ -18,37 +18,6 @@ struct SolidPool::Lane {
 };
 
 namespace {
-
-// dJ/dF, row-major.
-[[gnu::always_inline]] inline void cofactor(const double F[9], double g[9]) {
-  g[0] = F[4] * F[8] - F[5] * F[7];
-  g[1] = F[5] * F[6] - F[3] * F[8];
-  g[2] = F[3] * F[7] - F[4] * F[6];
-  g[3] = F[2] * F[7] - F[1] * F[8];
-  g[4] = F[0] * F[8] - F[2] * F[6];
-  g[5] = F[1] * F[6] - F[0] * F[7];
-  g[6] = F[1] * F[5] - F[2] * F[4];
-  g[7] = F[2] * F[3] - F[0] * F[5];
-  g[8] = F[0] * F[4] - F[1] * F[3];
-}
-
-// Adds s * d2J/dF2 to a packed 9x9: the entry of (i k)(j l) is eps_ijm eps_kln F_mn.
-void add_volume_hessian(const double F[9], double s, double A[45]) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const std::size_t m = 3 - i - j;
-      const double eps_ijm = (j + 1) % 3 == i ? -1.0 : 1.0;  // (i, j, m) with i > j
-      for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t l = 0; l < 3; ++l) {
-          if (k == l) continue;
-          const std::size_t n = 3 - k - l;
-          const double eps_kln = (k + 1) % 3 == l ? 1.0 : -1.0;
-          A[packed(3 * i + k, 3 * j + l)] += s * eps_ijm * eps_kln * F[3 * m + n];
-        }
-      }
-    }
-  }
-}
 
 VolumeResponse point_response(VolumeStrain strain, double j_minus_1) {
   if (strain == VolumeStrain::linear) return {j_minus_1, 1, 0};
@@ -103,25 +72,25 @@ void SolidPool::deformation_gradient(Index stencil, int point, std::span<const V
   for (int i = 0; i < 9; ++i) F[i] = h[i] + (i % 4 == 0 ? 1.0 : 0.0);
 }
 
-void SolidPool::evaluate(const StencilRequest& request, const StencilSlots& slots) const {
+void SolidPool::clear(const StencilRequest& request, const StencilSlots& slots) const {
   const std::size_t functions = static_cast<std::size_t>(data_.functions);
-  const bool gradient = request.want != Want::value;
   for (Index s = request.begin; s < request.end; ++s) {
-    const std::size_t n = nodes_[s].size();
-    const auto first = at(nodes_.offset[at(s)]);
+    const std::size_t n = nodes_[s].size(), first = at(nodes_.offset[at(s)]);
     slots.energy[at(s)] = 0;
-    std::fill_n(slots.value.begin() + static_cast<std::ptrdiff_t>(at(s) * functions), functions, 0.0);
-    if (!gradient) continue;
-    std::fill_n(slots.gradient.begin() + static_cast<std::ptrdiff_t>(first), n, Vec3{});
-    std::fill_n(slots.jacobian.begin() + static_cast<std::ptrdiff_t>(first * functions), n * functions,
-                Vec3{});
-    if (request.want == Want::hessian) {
-      std::fill_n(slots.hessian.begin() + hessian_offset()[at(s)], n * (n + 1) / 2, Mat3{});
-    }
+    std::fill_n(slots.value.data() + at(s) * functions, functions, 0.0);
+    if (request.want == Want::value) continue;
+    std::fill_n(slots.gradient.data() + first, n, Vec3{});
+    std::fill_n(slots.jacobian.data() + first * functions, n * functions, Vec3{});
+    if (request.want == Want::hessian)
+      std::fill_n(slots.hessian.data() + hessian_offset()[at(s)], n * (n + 1) / 2, Mat3{});
   }
+}
+
+void SolidPool::evaluate(const StencilRequest& request, const StencilSlots& slots) const {
+  clear(request, slots);
   Lane lanes[kLanes];
   int count = 0;
-  const bool of_mean = is_of_mean(strain_) && functions > 0;
+  const bool of_mean = is_of_mean(strain_) && data_.functions > 0;
   for (Index s = request.begin; s < request.end; ++s) {
     const double mean = of_mean ? mean_volume_strain(s, request.x, request.rest) : 0;
     for (int q = 0; q < data_.points; ++q) {
@@ -193,29 +162,18 @@ double SolidPool::strain_multiplier(const StencilRequest& request, const Lane& l
   return sigma;
 }
 
-// The Hessian of energy and volume rows together, made definite as one: their sum is often definite where one
-// of them is not.
 void SolidPool::definite_hessian(const StencilRequest& request, const Lane* lanes, int count,
                                  const PointBatch& batch, ResponseBatch& response) const {
-  Lanes F[9], A[45], G = {}, H = {};
-  for (int i = 0; i < 9; ++i) F[i] = load(batch.F[i]);
+  Lanes first = {}, second = {};
   for (int l = 0; l < count && data_.functions > 0; ++l) {
     const double sigma = strain_multiplier(request, lanes[l]);
     if (sigma == 0) continue;
     const VolumeResponse phi =
         is_of_mean(strain_) ? lanes[l].mean : point_response(strain_, lanes[l].volume_strain);
-    G[l] = sigma * phi.second;
-    H[l] = sigma * phi.first;
+    first[l] = sigma * phi.first;
+    second[l] = sigma * phi.second;
   }
-  Svd3 svd;
-  svd3(F, svd);
-  Spectrum spectrum = {};
-  if (material_) material_->spectrum(batch, svd, spectrum);
-  add_volume(svd, G, H, spectrum);
-  make_definite(request.definiteness, spectrum);
-  assemble(svd, spectrum, A);
-  for (int i = 0; i < 45; ++i) store(A[i], response.A[i]);
-  if (material_) material_->add_anisotropic(request.definiteness, batch, response);
+  definite_point_hessian(request.definiteness, material_.get(), batch, first, second, response);
 }
 
 void SolidPool::write(const StencilRequest& request, const StencilSlots& slots, const Lane& lane, double psi,
@@ -253,14 +211,8 @@ void SolidPool::write(const StencilRequest& request, const StencilSlots& slots, 
   double A[45];
   std::copy_n(A_material, 45, A);
   // A definite one holds the share of the volume rows already.
-  if (sigma != 0 && request.definiteness == Definiteness::exact) {
-    add_volume_hessian(lane.F, sigma * phi.first, A);
-    if (phi.second != 0) {
-      for (std::size_t i = 0; i < 9; ++i) {
-        for (std::size_t j = 0; j <= i; ++j) A[packed(i, j)] += sigma * phi.second * g[i] * g[j];
-      }
-    }
-  }
+  if (sigma != 0 && request.definiteness == Definiteness::exact)
+    add_volume_hessian(lane.F, g, sigma * phi.first, sigma * phi.second, A);
   contract_hessian(A, w, B, n, slots.hessian.data() + hessian_offset()[at(s)]);
 }
 

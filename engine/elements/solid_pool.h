@@ -60,6 +60,9 @@ class SolidPool : public StencilPool {
              const double* P, const double* A) const;
 
  protected:
+  // What evaluate() adds to begins at zero.
+  void clear(const StencilRequest& request, const StencilSlots& slots) const;
+
   std::string name_;
   std::shared_ptr<const Material> material_;
   VolumeStrain strain_;
