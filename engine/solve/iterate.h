@@ -10,6 +10,7 @@ struct Iterate {
   explicit Iterate(const System& system)
       : x(at(system.nodes())),
         lambda(at(system.rows())),
+        asked(system.has_bounds() ? lambda.size() : 0),
         force(x.size()),
         magnitude(x.size()),
         theta(lambda.size()),
@@ -17,6 +18,8 @@ struct Iterate {
 
   std::vector<Vec3> x;         // [m]
   std::vector<double> lambda;  // of compliant rows
+  // Those of the step that led here before they were put within their bounds; empty where no row has any.
+  std::vector<double> asked;
 
   double energy = 0;              // of the stencils [J]
   double absolute_energy = 0;     // sum of their magnitudes [J]
@@ -30,6 +33,7 @@ struct Iterate {
   void set(std::span<const Vec3> positions, std::span<const double> multipliers) {
     std::copy(positions.begin(), positions.end(), x.begin());
     std::copy(multipliers.begin(), multipliers.end(), lambda.begin());
+    if (!asked.empty()) asked = lambda;
   }
   void get(std::span<Vec3> positions, std::span<double> multipliers) const {
     std::copy(x.begin(), x.end(), positions.begin());

@@ -1,8 +1,19 @@
 #include "engine/solve/kkt/kkt.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace isochor {
+
+namespace {
+
+double largest(std::span<const double> v) {
+  double size = 0;
+  for (const double x : v) size = std::max(size, std::abs(x));
+  return size;
+}
+
+}  // namespace
 
 Kkt::Kkt(std::shared_ptr<const System> system, const Parallel& parallel, std::unique_ptr<LinearSolver> solver)
     : system_(std::move(system)),
@@ -62,7 +73,10 @@ void Kkt::reduce(std::span<const Vec3> node_rhs, std::span<const double> row_rhs
   matrix_.clear_residual();
   unknowns_.from_nodes(node_rhs, rhs);
   kept_.reduce(row_rhs, unknowns_.scale(), rhs);
+  const double asked = largest(rhs);
   condensed_.reduce(row_rhs, rhs);
+  const double with_rows = condensed_.count() > 0 ? largest(rhs) : asked;
+  share_ = with_rows > asked ? asked / with_rows : 1;
   bordered_.reduce(row_rhs);
   dual_.reduce(row_rhs, rhs);
 }
@@ -79,8 +93,8 @@ void Kkt::recover(std::span<const double> row_rhs, std::span<Vec3> dx, std::span
 bool Kkt::solve(std::span<const Vec3> node_rhs, std::span<const double> row_rhs, std::span<Vec3> dx,
                 std::span<double> dlambda, StageSeconds& seconds, double tolerance) {
   reduce(node_rhs, row_rhs);
-  const bool ok =
-      system_->treated().dual.empty() ? bordered_.solve(seconds, tolerance) : dual_.solve(row_rhs, seconds);
+  const bool ok = system_->treated().dual.empty() ? bordered_.solve(seconds, share_ * tolerance)
+                                                  : dual_.solve(row_rhs, seconds);
   recover(row_rhs, dx, dlambda);
   return ok;
 }

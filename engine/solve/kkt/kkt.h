@@ -110,6 +110,9 @@ class Kkt {
   BorderedRows bordered_;
   DualRows dual_;
   std::optional<CoupledSystem> coupled_;
+  // Of what is asked in the right-hand side: eliminated rows add residuals over their compliances, which
+  // cancel and may be larger by orders of magnitude. Tolerances are of what is asked.
+  double share_ = 1;
 };
 
 }  // namespace isochor

@@ -8,15 +8,17 @@ namespace isochor {
 
 // The active set of the primal-dual active-set method: a row whose multiplier would leave its bounds under
 // the force law lambda + theta / metric is held at the bound in this linear system (Hintermueller, Ito &
-// Kunisch 2002). What just touches at the start of a solve (no multiplier, no distance) is taken as met: a
-// body that rests there would fall freely in the first iteration. Where it pulls away, the next one lets go.
+// Kunisch 2002). The multiplier is that which the last step asked for: of the one put back to its bound only
+// rounding would tell whether the row is to be let go. What just touches at the start of a solve (no
+// multiplier, no distance) is taken as met: a body that rests there would fall freely in the first iteration.
+// Where it pulls away, the next one lets go.
 void Newton::hold_rows(Rows when) {
   const System& s = system();
   const auto lower = s.row_lower(), upper = s.row_upper();
   const bool first = when == Rows::first;
   held_.any = false;
   for (std::size_t r = 0; r < held_.held.size(); ++r) {
-    const double trial = now_.lambda[r] + now_.theta[r] / s.row_metric()[r];
+    const double trial = now_.asked[r] + now_.theta[r] / s.row_metric()[r];
     constexpr double touching = 1e-10;  // of the row's measure
     const double slack = first ? touching * s.row_measure()[r] / s.row_metric()[r] : 0;
     const bool held =
@@ -73,7 +75,7 @@ bool Newton::direction(SaddleReport& report) {
       coupling_ == Coupling::added
           ? kkt_.solve_coupled(part_ ? &*part_ : nullptr, held_.rows(), work_.node_rhs, work_.row_rhs,
                                coupled_tolerance_, step_.dx, step_.lambda, seconds_)
-          : kkt_.solve(work_.node_rhs, work_.row_rhs, step_.dx, step_.lambda, seconds_, tolerance(report));
+          : kkt_.solve(work_.node_rhs, work_.row_rhs, step_.dx, step_.lambda, seconds_, inexact_);
   report.dual.iterations += kkt_.dual_iterations() - before;
   report.krylov.iterations += kkt_.linear_iterations() - linear_before;
   report.linear_residual = kkt_.residual();

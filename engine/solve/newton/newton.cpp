@@ -27,7 +27,6 @@ Newton::Newton(std::shared_ptr<const System> system, const Parallel& parallel,
   }
   held_.way.assign(s.has_bounds() || s.has_lag() ? m : 0, 0);
   if (s.has_lag()) part_.emplace(system, parallel);
-  exact_ = s.has_bounds() || s.has_lag();
   moves_bounds_ = kkt_.coupled_possible() && s.has_bounds();
   if (kkt_.coupled_possible() && (part_ || moves_bounds_)) kkt_.prepare_coupled();
 }

@@ -104,12 +104,6 @@ class Newton : public SaddlePoint {
     std::uint8_t full_steps = 0;             // of the last eight, the latest in the lowest bit
   } pace_;
   bool moves_bounds_ = false;  // corrections may change which rows are held
-  bool exact_ = false;         // directions decide which rows are held next, or what is lagged
-  // Where they do, whole steps on inexact factors may go round in circles (ball_drop: three times the
-  // iterations). Iterations without factors, which tell no pivots, are dear enough to be left inexact.
-  double tolerance(const SaddleReport& report) const {
-    return exact_ && report.negative_pivots >= 0 ? 0 : inexact_;
-  }
   struct {
     std::vector<double> row, row_rhs;
     std::vector<Vec3> node, node_rhs, force;

@@ -31,6 +31,7 @@ void Newton::set_trial(double tau) {
   for (std::size_t i = 0; i < now_.x.size(); ++i) trial_.x[i] = now_.x[i] + tau * step_.dx[i];
   for (std::size_t r = 0; r < now_.lambda.size(); ++r)
     trial_.lambda[r] = now_.lambda[r] + tau * (step_.lambda[r] - now_.lambda[r]);
+  if (!trial_.asked.empty()) trial_.asked = trial_.lambda;
 }
 
 // The merit there.
@@ -57,9 +58,8 @@ void Newton::try_coupled(const SaddleProblem& p, double tau, SaddleReport& repor
 void Newton::take_trial(const SaddleProblem& p) {
   std::swap(now_, trial_);
   if (!system().has_bounds()) return;
-  trial_.lambda = now_.lambda;
   evaluator_.clamp(now_.lambda);
-  if (now_.lambda == trial_.lambda) return;
+  if (now_.lambda == now_.asked) return;
   evaluator_.evaluate(p, Want::gradient, Definiteness::exact, now_);
 }
 
@@ -186,7 +186,7 @@ bool Newton::search(const SaddleProblem& p, SaddleReport& report) {
 
 // Once more along a direction that is as exact as it can be.
 bool Newton::search_exactly(const SaddleProblem& p, SaddleReport& report) {
-  if (tolerance(report) == 0 || interrupted()) return false;
+  if (interrupted()) return false;
   evaluator_.evaluate(p, Want::gradient, Definiteness::exact, now_);
   inexact_ = 0;
   const bool found = direction(report) && search(p, report);
