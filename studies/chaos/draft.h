@@ -49,6 +49,7 @@ void draft_loads(ChaosDraft& draft);
 void draft_cavities(ChaosDraft& draft);
 void draft_attachments(ChaosDraft& draft);
 void draft_contacts(ChaosDraft& draft);
+void draft_active(ChaosDraft& draft);
 void draft_drive(ChaosDraft& draft);
 
 }  // namespace isochor::studies

@@ -88,6 +88,15 @@ void add_effect_parts(const SceneDef& s, std::set<std::string>& parts) {
   for (const CavityDef& c : s.cavities) parts.insert("cavity, " + word(kControls, c.control));
   note("valve", !s.valves.empty());
   note("traction", !s.tractions.empty());
+  for (const TractionDef& t : s.tractions) note("traction, current area", t.current_area);
+  note("pressure on faces", !s.pressures.empty());
+  note("muscle", !s.muscles.empty());
+  note("growth", !s.growth.empty());
+  note("spring", !s.springs.empty());
+  note("linear constraint", !s.linear_constraints.empty());
+  note("nodes that follow data", !s.driven.empty());
+  note("skin", !s.skins.empty());
+  note("statics, then dynamics", s.analysis.static_until.has_value());
   note("point force", !s.forces.empty());
   note("damping", !s.damping.empty());
   note("epidermis", !s.epidermis.empty());
@@ -125,6 +134,7 @@ ChaosScene chaos_scene(std::uint64_t seed, const ChaosSize& size) {
   draft_cavities(draft);
   draft_attachments(draft);
   draft_contacts(draft);
+  draft_active(draft);
   draft_drive(draft);
   return std::move(draft.out);
 }

@@ -164,6 +164,9 @@ Vec3 target_of(const DirichletDef& d, double t, const Vec3& X) {
 bool is_isolated(const SceneDef& s) {
   if (s.analysis.type != AnalysisType::dynamics) return false;
   if (!s.tractions.empty() || !s.forces.empty() || !s.cavities.empty() || !s.cables.empty()) return false;
+  if (!s.pressures.empty() || !s.muscles.empty() || !s.growth.empty() || !s.springs.empty() ||
+      !s.linear_constraints.empty() || !s.driven.empty() || !s.skins.empty() || s.analysis.static_until)
+    return false;
   if (!(s.analysis.options.gravity == Vec3{}) &&
       (s.analysis.options.gravity_curve.points.size() != 1 || !s.rigid_bodies.empty()))
     return false;
@@ -199,9 +202,14 @@ bool is_carried_by_supports(const SceneDef& s, const BuiltScene& built) {
   const bool from_outside =
       std::any_of(s.cables.begin(), s.cables.end(), [](const CableDef& c) { return c.from || c.to; });
   // Chambers that are open push on one side more than on the other, and so does the weight of a liquid.
-  if (from_outside || !s.cavities.empty()) return false;
+  if (from_outside || !s.cavities.empty() || !s.pressures.empty()) return false;
+  // Muscles, growth and springs between points of bodies are forces inside.
+  const bool outside = std::any_of(s.springs.begin(), s.springs.end(),
+                                   [](const SpringDef& spring) { return !spring.to_body; });
+  if (outside || !s.linear_constraints.empty() || !s.driven.empty() || !s.skins.empty()) return false;
   return std::all_of(s.tractions.begin(), s.tractions.end(), [&](const TractionDef& t) {
     const bool total = !(t.total_force == Vec3{});
+    if (t.current_area) return false;
     return total ||
            area_of(built.world.mesh(built.bodies[static_cast<std::size_t>(t.body)]), t.surface).has_value();
   });
@@ -256,7 +264,9 @@ void SceneJudge::watch_volume(std::size_t b) {
     });
     const bool whole = rows->def.regions.empty() && rows->def.space != VolumeSpace::zone &&
                        rows->def.space != VolumeSpace::ring;
-    exact = whole && (rows->def.hard || (rows->def.carries_bulk && incompressible));
+    const bool grows = std::any_of(scene_.growth.begin(), scene_.growth.end(),
+                                   [&](const GrowthDef& g) { return static_cast<std::size_t>(g.body) == b; });
+    exact = whole && !grows && (rows->def.hard || (rows->def.carries_bulk && incompressible));
   }
   exact_volume_.push_back(exact);
   log_volume_.push_back(rows != nullptr && rows->def.strain == VolumeStrain::logarithmic);
@@ -289,6 +299,25 @@ void SceneJudge::watch_supports(const BuiltScene& built) {
     for (const Index i : nodes) {
       held_[b][static_cast<std::size_t>(i)] = true;
       ++times[{d.where.body, i}];
+    }
+  }
+  const auto also = [&](BodyId body, Index node) {
+    held_[static_cast<std::size_t>(body)][static_cast<std::size_t>(node)] = true;
+    ++times[{body, node}];
+  };
+  for (const SkinDef& skin : scene_.skins) {
+    for (const Index i :
+         selected(built.world.mesh(built.bodies[static_cast<std::size_t>(skin.where.body)]), skin.where))
+      also(skin.where.body, i);
+  }
+  for (const DrivenDef& d : scene_.driven) {
+    for (const Index i : d.nodes) also(d.body, i);
+  }
+  // Nodes that nothing else moves, by their place in the list.
+  for (const DrivenDef& d : scene_.driven) {
+    followed_.emplace_back();
+    for (std::size_t k = 0; k < d.nodes.size(); ++k) {
+      if (times[{d.body, d.nodes[k]}] == 1) followed_.back().push_back(k);
     }
   }
   // Where supports share a node, the first one has it or both agree; neither is asked about here.
@@ -357,6 +386,26 @@ std::optional<Finding> SceneJudge::support(const World& world, std::size_t def) 
     if (away <= allowed) continue;
     return Finding{"support", "node " + std::to_string(i + 1) + " of support \"" + d.name + "\" is " +
                                   number(away) + " m from where it is put"};
+  }
+  return {};
+}
+
+// Linear between frames, written down again.
+std::optional<Finding> SceneJudge::driven(const World& world, std::size_t def) const {
+  const DrivenDef& d = scene_.driven[def];
+  const auto x = world.positions(d.body);
+  const double t = world.time();
+  std::size_t next = 0;
+  while (next + 1 < d.times.size() && d.times[next] < t) ++next;
+  const std::size_t last = next > 0 ? next - 1 : 0;
+  const double span = d.times[next] - d.times[last];
+  const double s = span > 0 ? std::clamp((t - d.times[last]) / span, 0.0, 1.0) : 1;
+  for (const std::size_t k : followed_[def]) {
+    const Vec3 target = (1 - s) * d.positions[last][k] + s * d.positions[next][k];
+    const double away = length(x[static_cast<std::size_t>(d.nodes[k])] - target);
+    if (away <= 1e-9 * (length_ + length(target))) continue;
+    return Finding{"driven", "node " + std::to_string(d.nodes[k] + 1) + " of \"" + d.name + "\" is " +
+                                 number(away) + " m from where its data put it"};
   }
   return {};
 }
@@ -453,6 +502,9 @@ std::optional<Finding> SceneJudge::accepted(const BuiltScene& built, std::span<c
   }
   for (std::size_t d = 0; d < scene_.dirichlet.size(); ++d) {
     if (auto wrong = support(built.world, d)) return wrong;
+  }
+  for (std::size_t d = 0; d < scene_.driven.size(); ++d) {
+    if (auto wrong = driven(built.world, d)) return wrong;
   }
   for (std::size_t c = 0; c < scene_.contacts.size(); ++c) {
     if (auto wrong = obstacle(built, c)) return wrong;

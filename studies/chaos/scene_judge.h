@@ -35,6 +35,7 @@ class SceneJudge {
   void watch_contacts(const BuiltScene& built);
   std::optional<Finding> volume(const World& world, std::size_t body) const;
   std::optional<Finding> support(const World& world, std::size_t def) const;
+  std::optional<Finding> driven(const World& world, std::size_t def) const;
   std::optional<Finding> obstacle(const BuiltScene& built, std::size_t contact) const;
   std::optional<Finding> energy(const World& world);
   std::optional<Finding> balance(const BuiltScene& built) const;
@@ -43,9 +44,11 @@ class SceneJudge {
   SceneDef scene_;  // poses read
   StateJudge state_;
   JudgeLimits limits_;
-  std::vector<bool> exact_volume_;                // of a body: its rows keep it
-  std::vector<bool> log_volume_;                  // by log J
-  std::vector<std::vector<Index>> supported_;     // nodes of each support that must be at their targets
+  std::vector<bool> exact_volume_;             // of a body: its rows keep it
+  std::vector<bool> log_volume_;               // by log J
+  std::vector<std::vector<Index>> supported_;  // nodes of each support that must be at their targets
+  std::vector<std::vector<std::size_t>>
+      followed_;                                  // of nodes that follow data: those that nothing else moves
   std::vector<std::vector<bool>> held_;           // nodes of each body that some support moves or holds
   std::vector<std::vector<Index>> touching_;      // nodes of each contact that must stay out of its obstacle
   std::vector<std::vector<ConvexPlane>> planes_;  // of obstacles given by surfaces that are convex

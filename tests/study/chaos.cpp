@@ -9,6 +9,7 @@
 #include <set>
 
 #include "engine/base/base.h"
+#include "scenes/effects/kind.h"
 #include "scenes/scene_file.h"
 #include "studies/chaos/child.h"
 #include "studies/chaos/scene_judge.h"
@@ -103,13 +104,16 @@ TEST_CASE("scenes that are written and read are the same") {
 }
 
 TEST_CASE("a few hundred scenes have everything that is on the shelf") {
-  std::set<std::string> parts;
+  std::set<std::string> parts, drawn;
   std::set<Method> methods;
   std::set<Solver> solvers;
   std::set<Definiteness> definiteness;
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     const ChaosScene chaos = chaos_scene(seed, ChaosSize::small());
     for (const std::string& part : parts_of(chaos.scene)) parts.insert(part);
+    for (const EffectKind* kind : effect_kinds) {
+      if (kind->size(chaos.scene) > 0) drawn.insert(kind->key);
+    }
     methods.insert(chaos.scene.analysis.options.method);
     solvers.insert(chaos.scene.analysis.options.solver);
     definiteness.insert(chaos.scene.analysis.options.definiteness);
@@ -117,6 +121,11 @@ TEST_CASE("a few hundred scenes have everything that is on the shelf") {
   CHECK(methods.size() == 8);
   CHECK(solvers.size() == 6);  // all but the one under the GPL
   CHECK(definiteness.size() == 3);
+  // Every list of effects that a scene file may have.
+  for (const EffectKind* kind : effect_kinds) {
+    INFO(kind->key);
+    CHECK(drawn.contains(kind->key));
+  }
   const auto count = [&](const std::string& start) {
     return std::count_if(parts.begin(), parts.end(),
                          [&](const std::string& p) { return p.starts_with(start); });
@@ -148,6 +157,8 @@ TEST_CASE("a few hundred scenes have everything that is on the shelf") {
                            "memory",
                            "compression penalty",
                            "fields of constants",
+                           "traction, current area",
+                           "statics, then dynamics",
                            "lattice",
                            "starts in motion",
                            "several bodies"}) {

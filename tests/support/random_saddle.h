@@ -82,6 +82,7 @@ struct RandomRows {
   Compliance compliance = Compliance::diagonal;
   bool wide = false;     // over all stencils instead of two
   bool bounded = false;  // may be held at a bound
+  double softness = 1;   // its compliance, times this
 };
 
 class RandomRowPool final : public isochor::RowPool {
@@ -100,9 +101,10 @@ class RandomRowPool final : public isochor::RowPool {
       for (std::size_t k = 0; k < functions.size(); ++k) weight.push_back(unit(random));
       metric.push_back(0.5 + 0.4 * unit(random));
       measure.push_back(1);
-      if (def.compliance != Compliance::none) compliance.push_back({r, r, 0.3 + 0.1 * unit(random)});
+      if (def.compliance != Compliance::none)
+        compliance.push_back({r, r, def.softness * (0.3 + 0.1 * unit(random))});
       if (def.compliance == Compliance::coupled && r > 0)
-        compliance.push_back({r, r - 1, 0.1 * unit(random)});
+        compliance.push_back({r, r - 1, def.softness * (0.1 * unit(random))});
     }
     if (def.bounded) lower.assign(isochor::at(def.rows), 0);
   }
