@@ -29,6 +29,8 @@ class PenalizedMaterial final : public Material {
       : name_(name), base_(std::move(base)), penalty_(name, penalty) {}
   std::string_view name() const override { return name_; }
   void describe(Fingerprint& f) const override { f.add(name_, base_, penalty_); }
+  bool remembers() const override { return base_->remembers(); }
+  void keep(const PointBatch& points, double* kept) const override { base_->keep(points, kept); }
 
   void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
     base_->evaluate(want, points, r);

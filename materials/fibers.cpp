@@ -93,6 +93,8 @@ class FiberMaterial final : public Material {
       : name_(name), matrix_(std::move(matrix)), families_(std::move(families)) {}
   std::string_view name() const override { return name_; }
   void describe(Fingerprint& f) const override { f.add(name_, matrix_, families_); }
+  bool remembers() const override { return matrix_->remembers(); }
+  void keep(const PointBatch& points, double* kept) const override { matrix_->keep(points, kept); }
 
   void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
     matrix_->evaluate(want, points, r);

@@ -189,7 +189,7 @@ Result<MaterialPtr> with_poisson_field(const std::function<Result<MaterialPtr>(d
                    "the law has a field of its own; put the field of Poisson's ratio on the law without "
                    "fields and the others on top"};
     }
-    if (material.value()->memory()) {
+    if (material.value()->memory() || material.value()->distortional()->remembers()) {
       return Error{who +
                    "the law has a memory, which does not go with a field of Poisson's ratio; give each "
                    "ratio a region of its own"};

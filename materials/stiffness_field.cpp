@@ -16,6 +16,8 @@ class ScaledMaterial final : public Material {
       : base_(std::move(base)), factor_(std::move(factor)) {}
   std::string_view name() const override { return base_->name(); }
   void describe(Fingerprint& f) const override { f.add(base_, factor_); }
+  bool remembers() const override { return base_->remembers(); }
+  void keep(const PointBatch& points, double* kept) const override { base_->keep(points, kept); }
 
   void evaluate(Want want, const PointBatch& points, ResponseBatch& r) const override {
     base_->evaluate(want, points, r);

@@ -8,6 +8,7 @@
 #include "engine/base/text.h"
 #include "engine/elements/material_model.h"
 #include "engine/math/lane_functions.h"
+#include "materials/isochoric_base.h"
 #include "materials/stretch_lanes.h"
 
 namespace isochor {
@@ -133,32 +134,15 @@ class PronyModel final : public MaterialModel {
   MaterialMemory memory_;
 };
 
-// Whether a change of size alone leaves the energy where it is.
-bool is_isochoric(const Material& energy) {
-  PointBatch points{};
-  ResponseBatch r;
-  double size = 0;
-  for (int l = 0; l < kLanes; ++l) {
-    for (int i = 0; i < 9; i += 4) points.F[i][l] = 1 + 0.1 * (l % 2 == 0 ? 1 : -1);
-    points.F[1][l] = l < 2 ? 0 : 0.3;  // and one that is sheared, for the size of stresses
-    points.J_before[l] = 1;
-  }
-  energy.evaluate(Want::gradient, points, r);
-  for (auto& p : r.P) size = std::max(size, std::abs(p[2]));
-  double stray = 0;
-  for (int l = 0; l < 2; ++l)
-    for (auto& p : r.P) stray = std::max(stray, std::abs(p[l]));
-  return stray <= 1e-10 * size;
-}
-
 }  // namespace
 
 Result<MaterialPtr> with_prony_series(MaterialPtr base, const std::vector<PronyTerm>& terms,
                                       StaticTime statics) {
   const std::string who = "viscoelastic: ";
   if (!base) return Error{who + "the material is empty"};
-  if (base->memory())
-    return Error{who + base->name().data() + " has a memory already; give all terms at once"};
+  if (base->memory() || base->distortional()->remembers())
+    return Error{who + base->name().data() +
+                 " has a memory already; give all terms at once, and no softening beside them"};
   if (terms.empty()) return Error{who + "there are no terms; give at least one pair of ratio and time"};
   double sum = 0;
   for (std::size_t i = 0; i < terms.size(); ++i) {

@@ -14,6 +14,7 @@
 #include "isochor/generate.h"
 #include "isochor/lattice.h"
 #include "isochor/mesh_select.h"
+#include "isochor/mullins.h"
 #include "isochor/viscoelastic.h"
 #include "isochor/world.h"
 #include "scenes/effects/list.h"
@@ -91,6 +92,7 @@ struct MaterialDef {
   ElasticConstants constants;  // of laws with constants of their own, only Poisson's ratio counts
   LawConstants own;
   std::vector<PronyTerm> prony;  // beside it, none: an elastic material
+  MullinsSoftening mullins;      // of the law; r = 0: none
   StaticTime static_time = StaticTime::long_term;
   std::vector<SceneFibers> fibers;
   CompressionPenalty compression_penalty;  // as it is made: none

@@ -38,6 +38,12 @@ double GrownPool::grown_mean(Index stencil, const GrownState& grown, const Stenc
   return (mean_volume_strain(stencil, request.x, request.rest) - (grown.J - 1)) / grown.J;
 }
 
+void GrownPool::elastic_gradient(const StencilRequest& request, Index stencil, int point, double F[9]) const {
+  double whole[9], unused = 0;
+  deformation_gradient(stencil, point, request.x, request.rest, whole, unused);
+  times(whole, growth_->at(stencil, growth_->amount->at(request.increment.t1)).inverse, F);
+}
+
 void GrownPool::evaluate(const StencilRequest& request, const StencilSlots& slots) const {
   clear(request, slots);
   const double amount = growth_->amount->at(request.increment.t1);
@@ -94,6 +100,7 @@ void GrownPool::flush(const StencilRequest& request, const StencilSlots& slots, 
     for (int i = 0; i < 9; ++i) batch.F[i][l] = lane.F[i];
     batch.element[l] = lane.stencil;
     batch.J_before[l] = 1;
+    if (remembers_) batch.kept[l] = kept(request.memory, lane.stencil, lane.point);
     if (1 + lane.volume_strain >= looks_back_below_ || request.increment.before.empty()) continue;
     double F[9], before = 0;
     deformation_gradient(lane.stencil, lane.point, request.increment.before, request.rest, F, before);

@@ -24,6 +24,8 @@ class GrownPool final : public SolidPool {
   const Growth* growth() const override { return growth_.get(); }
 
  private:
+  void elastic_gradient(const StencilRequest& request, Index stencil, int point, double F[9]) const override;
+
   struct Lane;
   void flush(const StencilRequest& request, const StencilSlots& slots, const Lane* lanes, int count) const;
   void definite_hessian(const StencilRequest& request, const Lane* lanes, int count, const PointBatch& batch,

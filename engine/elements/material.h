@@ -15,6 +15,8 @@ struct alignas(64) PointBatch {
   Index element[kLanes];  // for parameter fields: the material's own element number
   double
       J_before[kLanes];  // det F when the increment began; set where Material::looks_back_below() asks for it
+  double kept[kLanes];   // of the point, from the last increment that was accepted; set where
+                         // Material::remembers(), zero at the start
 };
 
 // psi [Pa], P = dpsi/dF [Pa] and A = dP/dF [Pa] (lower triangle packed: A[i (i + 1) / 2 + j], j <= i).
@@ -35,6 +37,14 @@ class Material {
 
   // Below this J evaluate() and spectrum() read points.J_before.
   virtual double looks_back_below() const { return -std::numeric_limits<double>::infinity(); }
+
+  // True: evaluate() and spectrum() read points.kept, a number a point that keep() makes of the state that a
+  // step is accepted with; it finds the one before in its place.
+  virtual bool remembers() const { return false; }
+  virtual void keep(const PointBatch& points, double* kept) const {
+    (void)points;
+    (void)kept;
+  }
 
   // A once more, as the sum of two parts that can be made definite:
   // the isotropic part in closed form in the frame of F (all zero where a lane has no value) ...

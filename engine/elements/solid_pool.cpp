@@ -37,8 +37,40 @@ SolidPool::SolidPool(std::string name, std::shared_ptr<const SolidData> data,
       shared_(std::move(data)),
       data_(*shared_) {
   if (material_) looks_back_below_ = material_->looks_back_below();
+  remembers_ = material_ && material_->remembers();
   nodes_ = data_.nodes;
   finish_topology();
+}
+
+StencilFacets SolidPool::facets() const {
+  StencilFacets f;
+  if (remembers_) f.remembering = this;
+  return f;
+}
+
+void SolidPool::elastic_gradient(const StencilRequest& request, Index stencil, int point, double F[9]) const {
+  double unused = 0;
+  deformation_gradient(stencil, point, request.x, request.rest, F, unused);
+}
+
+void SolidPool::accept(const StencilRequest& request, std::span<double> memory) const {
+  PointBatch batch;
+  double next[kLanes];
+  const int all = SolidPool::memory();
+  for (int first = 0; first < all; first += kLanes) {
+    for (int l = 0; l < kLanes; ++l) {
+      const int p = std::min(first + l, all - 1);
+      const Index s = p / data_.points;
+      double F[9];
+      elastic_gradient(request, s, p % data_.points, F);
+      for (int i = 0; i < 9; ++i) batch.F[i][l] = F[i];
+      batch.element[l] = s;
+      batch.J_before[l] = 1;
+      batch.kept[l] = next[l] = memory[at(p)];
+    }
+    material_->keep(batch, next);
+    for (int l = 0; l < kLanes && first + l < all; ++l) memory[at(first + l)] = next[l];
+  }
 }
 
 double SolidPool::volume(Index stencil) const {
@@ -124,6 +156,7 @@ void SolidPool::flush(const StencilRequest& request, const StencilSlots& slots, 
       for (int i = 0; i < 9; ++i) batch.F[i][l] = lane.F[i];
       batch.element[l] = lane.stencil;
       batch.J_before[l] = 1;
+      if (remembers_) batch.kept[l] = kept(request.memory, lane.stencil, lane.point);
       if (1 + lane.volume_strain >= looks_back_below_ || request.increment.before.empty()) continue;
       double F[9];
       deformation_gradient(lane.stencil, lane.point, request.increment.before, request.rest, F,

@@ -24,7 +24,7 @@ struct SolidData {
 
 struct Growth;
 
-class SolidPool : public StencilPool {
+class SolidPool : public StencilPool, public RememberingStencils {
  public:
   // `material` may be null: volume functions alone. Energies are integrated over the points.
   // The data may be those of other pools, of clones of a world or of the scene before a change.
@@ -36,6 +36,13 @@ class SolidPool : public StencilPool {
     return {.energy = material_ != nullptr, .functions = data_.functions};
   }
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override;
+  StencilFacets facets() const override;
+  // What points keep, one a point, where the material remembers.
+  int memory() const override { return data_.points * static_cast<int>(nodes_.count()); }
+  void accept(const StencilRequest& request, std::span<double> memory) const override;
+  double kept(const std::span<const double> memory, Index stencil, int point) const {
+    return memory.empty() ? 0 : memory[at(stencil * data_.points + point)];
+  }
 
   const SolidData& data() const { return data_; }
   // Rest volume of a stencil [m^3].
@@ -60,6 +67,8 @@ class SolidPool : public StencilPool {
              const double* P, const double* A) const;
 
  protected:
+  // F that the energy is of at a point.
+  virtual void elastic_gradient(const StencilRequest& request, Index stencil, int point, double F[9]) const;
   // What evaluate() adds to begins at zero.
   void clear(const StencilRequest& request, const StencilSlots& slots) const;
 
@@ -67,6 +76,7 @@ class SolidPool : public StencilPool {
   std::shared_ptr<const Material> material_;
   VolumeStrain strain_;
   double looks_back_below_ = -std::numeric_limits<double>::infinity();
+  bool remembers_ = false;
   std::shared_ptr<const SolidData> shared_;
   const SolidData& data_;  // of shared_
 };

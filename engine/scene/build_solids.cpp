@@ -197,6 +197,7 @@ Result<void> Builder::build_region(BodyData& body, RegionData& region) {
     if (energy && smoothed) region.guard_pool = pool;
     energy = nullptr;  // once only
   }
+  region.remembers = !region.memory_pools.empty() || (region.energy && region.energy->remembers());
   return {};
 }
 

@@ -169,6 +169,7 @@ struct RegionData {
   std::shared_ptr<const Material> energy;  // of elastic_pool
   Index elastic_pool = -1;
   std::vector<Index> memory_pools;                                    // on the stencils of elastic_pool
+  bool remembers = false;                                             // its energy or what flows beside it
   Index guard_pool = -1;                                              // of edge-smoothed bodies
   std::array<Index, kVolumeStrains> volume_pool{-1, -1, -1, -1, -1};  // by VolumeStrain
   std::array<bool, kVolumeStrains> volume_wanted{};

@@ -38,17 +38,12 @@ EndCheck::EndCheck(const StepContext& context)
     : context_(context),
       admission_(context.bodies, context.system().parts()),
       momentum_(context.state.x.size()) {
-  const System& system = context_.system();
-  if (system.has_bounds() || system.has_barrier())
-    for (auto& values : row_values_) values.resize(at(system.rows()));
   if (context_.options.scheme->has_inertia()) ahead_ = context_.state;
 }
 
-// True when something that moves by itself (an obstacle on its way) could do work on the bodies: functions or
-// energies differ between the beginning and the end of the increment at the same positions.
-bool EndCheck::moved_from_outside(const SaddleProblem& problem) {
+// True when something that moves by itself (an obstacle on its way) could do work on the bodies.
+bool EndCheck::moved_from_outside(const SaddleProblem& problem) const {
   const System& system = context_.system();
-  const State& state = context_.state;
   // A given multiplier on functions that hold on to something is a load without a potential.
   const SystemParts& parts = system.parts();
   const bool without_potential =
@@ -57,17 +52,10 @@ bool EndCheck::moved_from_outside(const SaddleProblem& problem) {
                parts.stencil_pools[at(rows->stencil_pool)]->facets().lagged;
       });
   if (without_potential) return true;
-  if (!system.has_bounds() && !system.has_barrier()) return false;
-  Assembly& assembly = context_.methods.chosen().assembly();
-  double energy[2] = {};
-  for (const int end : {0, 1}) {
-    const double t = end == 0 ? problem.increment.t0 : problem.increment.t1;
-    assembly.set_increment({0, {}, t, t}, problem.memory);
-    assembly.evaluate(Want::value, Definiteness::exact, state.x, state.lambda, problem.prescribed);
-    assembly.row_values(row_values_[static_cast<std::size_t>(end)]);
-    energy[end] = assembly.energy();
-  }
-  return energy[0] != energy[1] || row_values_[0] != row_values_[1];
+  const auto& moving = system.facets().moving;
+  return std::any_of(moving.begin(), moving.end(), [&](const auto& of) {
+    return of.facet->moves(problem.increment.t0, problem.increment.t1);
+  });
 }
 
 // The energy that an increment begins with, under the loads of its end.

@@ -30,7 +30,7 @@ class EndCheck {
   Admission::Verdict judge_state() const { return admission_.judge(context_.state.x, context_.state.x); }
 
  private:
-  bool moved_from_outside(const SaddleProblem& problem);
+  bool moved_from_outside(const SaddleProblem& problem) const;
   bool may_stay_unfinished(const StoredEnergy& stored, SaddleReport& report) const;
   std::string energy_gained(double h, const Trial& trial, const StoredEnergy& stored);
   std::string far_away(const SaddleReport& solve, double moved) const;
@@ -43,10 +43,9 @@ class EndCheck {
     double kinetic = 0;
     StoredEnergy stored;
   } before_;
-  State ahead_;                                    // of dynamics: the state that an end would make
-  std::vector<Vec3> momentum_;                     // one a node
-  std::array<std::vector<double>, 2> row_values_;  // where obstacles may move
-  std::string led_away_;  // of this step: an increment that ended far from where it began
+  State ahead_;                 // of dynamics: the state that an end would make
+  std::vector<Vec3> momentum_;  // one a node
+  std::string led_away_;        // of this step: an increment that ended far from where it began
 };
 
 }  // namespace isochor

@@ -93,11 +93,24 @@ class RenewedStencils {
   ~RenewedStencils() = default;
 };
 
+// Stencils that hold on to something which is moved (gaps to an obstacle on its way): it does work on the
+// bodies that no potential knows of. Loads and growth are none of them; their balance is taken under what
+// they are at the end of an increment.
+class MovingStencils {
+ public:
+  // False only where functions and energies are the same at t0 and at t1, at any positions.
+  virtual bool moves(double t0, double t1) const = 0;
+
+ protected:
+  ~MovingStencils() = default;
+};
+
 struct StencilFacets {
   const LaggedStencils* lagged = nullptr;
   const RememberingStencils* remembering = nullptr;
   const BarrierStencils* barrier = nullptr;
   const RenewedStencils* renewed = nullptr;
+  const MovingStencils* moving = nullptr;
 };
 
 // The increment of time that rows are evaluated for, and what the pool keeps between steps.

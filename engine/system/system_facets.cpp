@@ -33,6 +33,7 @@ SystemFacets::SystemFacets(std::span<const std::shared_ptr<const StencilPool>> s
     add(remembering, p, f.remembering, memory);
     add(barriers, p, f.barrier);
     add(renewed, p, f.renewed);
+    add(moving, p, f.moving);
     coupled = coupled || (f.lagged && f.lagged->couples());
   }
 }

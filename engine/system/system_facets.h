@@ -30,6 +30,7 @@ struct SystemFacets {
   std::vector<MemoryOf<RememberingStencils>> remembering;
   std::vector<FacetOf<BarrierStencils>> barriers;
   std::vector<FacetOf<RenewedStencils>> renewed;
+  std::vector<FacetOf<MovingStencils>> moving;
   std::vector<MemoryOf<RememberingRows>> remembering_rows;
   std::vector<FacetOf<ImpactRows>> impacts;  // compliant rows, one or more
   std::vector<FacetOf<TurningRows>> turning;

@@ -34,10 +34,11 @@ double largest(std::span<const double> list) {
 Result<void> check_memory(const Builder& builder) {
   for (const BodyData& body : builder.bodies()) {
     for (const RegionData& region : body.regions) {
-      if (!body.present() || region.memory_pools.empty()) continue;
+      if (!body.present() || !region.remembers) continue;
       return Error{"gradients: body \"" + body.name + "\", region \"" + region.name + "\": the material " +
                    std::string(region.material->name()) +
-                   " remembers what came before, which gradients do not follow; make its statics long-term"};
+                   " remembers what came before, which gradients do not follow; take its law without that, "
+                   "or make the statics of a series long-term"};
     }
   }
   return {};

@@ -44,12 +44,14 @@ void add_memory(const SystemParts& parts, const SystemFacets& facets, const Owne
 
 // What the materials of a body keep.
 void add_memory(const BodyData& body, const SystemFacets& facets, Inventory::Of& of) {
-  for (const RegionData& region : body.regions) {
-    for (const Index pool : region.memory_pools) {
-      for (const auto& stencils : facets.remembering) {
-        if (stencils.pool == pool) of.memory.push_back({stencils.first, stencils.count});
-      }
+  const auto add = [&](Index pool) {
+    for (const auto& stencils : facets.remembering) {
+      if (stencils.pool == pool) of.memory.push_back({stencils.first, stencils.count});
     }
+  };
+  for (const RegionData& region : body.regions) {
+    add(region.elastic_pool);
+    for (const Index pool : region.memory_pools) add(pool);
   }
 }
 

@@ -24,10 +24,10 @@ struct PointState {
 };
 
 PointState point_state(const SolidPool& pool, const Material* energy, Index stencil, int q,
-                       std::span<const Vec3> x, std::span<const Vec3> rest, const GrownState* grown) {
+                       const RecoveryInput& in, const GrownState* grown, double kept) {
   PointState p;
   double F[9], strain = 0;
-  pool.deformation_gradient(stencil, q, x, rest, F, strain);
+  pool.deformation_gradient(stencil, q, in.x, in.parts.rest, F, strain);
   p.F = Eigen::Map<const Matrix>(F);
   p.J = 1 + strain;
   p.elastic = p.F;
@@ -43,12 +43,20 @@ PointState point_state(const SolidPool& pool, const Material* energy, Index sten
   for (int l = 0; l < kLanes; ++l) {
     for (int i = 0; i < 9; ++i) batch.F[i][l] = p.elastic(i / 3, i % 3);
     batch.element[l] = stencil;
+    batch.kept[l] = kept;
   }
   energy->evaluate(Want::gradient, batch, response);
   Matrix P;
   for (int i = 0; i < 9; ++i) P(i / 3, i % 3) = response.P[i][0];
   p.stress = P * p.elastic.transpose() / p.elastic_J;
   return p;
+}
+
+// What a point of the stencils of the energy keeps.
+double kept_of(const RecoveryInput& in, const RegionData& region, Index stencil, int q) {
+  if (!region.energy || !region.energy->remembers()) return 0;
+  const auto& pool = static_cast<const SolidPool&>(*in.parts.stencil_pools[at(region.elastic_pool)]);
+  return pool.kept(in.memory[at(region.elastic_pool)], stencil, q);
 }
 
 // Cauchy stress of what flows at a point of the stencils of the energy.
@@ -114,8 +122,8 @@ void add_patch_stress(const RecoveryInput& in, const RegionData& region, std::ve
   Index stencil = 0;
   for (auto& [edge, p] : patches) {
     const GrownState grown = growth ? growth->at(stencil, amount) : GrownState{};
-    const PointState point =
-        point_state(pool, energy.get(), stencil, 0, in.x, in.parts.rest, growth ? &grown : nullptr);
+    const PointState point = point_state(pool, energy.get(), stencil, 0, in, growth ? &grown : nullptr,
+                                         kept_of(in, region, stencil, 0));
     p.stress = point.stress;
     if (!region.memory_pools.empty()) p.stress += memory_stress(in, region, stencil, 0, point);
     ++stencil;
@@ -188,7 +196,7 @@ void add_region(const RecoveryInput& in, const RegionData& region, std::vector<C
     const GrownState state = growth ? growth->at(region.cells[at(s)], amount) : GrownState{};
     const GrownState* grown = growth ? &state : nullptr;
     for (int q = 0; q < pool.data().points; ++q) {
-      PointState p = point_state(pool, energy.get(), s, q, in.x, in.parts.rest, grown);
+      PointState p = point_state(pool, energy.get(), s, q, in, grown, kept_of(in, region, s, q));
       if (!smoothed && !region.memory_pools.empty()) p.stress += memory_stress(in, region, s, q, p);
       const double w = p.weight / volume;
       const double pressure = row_pressure(in, region, s, q, p.elastic_J, grown);

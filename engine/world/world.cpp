@@ -233,7 +233,9 @@ Result<void> check_memory(const Builder& builder, const TimeScheme& scheme) {
   if (scheme.evaluated_at() == 1 && !scheme.follows_paths()) return {};
   for (const BodyData& body : builder.bodies()) {
     for (const RegionData& region : body.regions) {
-      if (!body.present() || region.memory_pools.empty()) continue;
+      // Paths have no time to flow in; what is kept of stresses needs none.
+      const bool refused = scheme.follows_paths() ? !region.memory_pools.empty() : region.remembers;
+      if (!body.present() || !refused) continue;
       return Error{
           "body \"" + body.name + "\", region \"" + region.name + "\": the material " +
           std::string(region.material->name()) + " remembers, and the scheme " + std::string(scheme.name()) +

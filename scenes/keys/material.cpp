@@ -45,6 +45,16 @@ void describe(Visitor& io, PronyTerm& t) {
   io.number(Key("time", "s", "of relaxation").above(0).must(), t.time, d.time);
 }
 
+void describe(Visitor& io, MullinsSoftening& s) {
+  const MullinsSoftening d;
+  io.about("mullins",
+           "Softer where it has been stretched before, see [Mullins softening](materials/mullins.md).");
+  io.number(Key("r", "", "how much softer at most: 1 - 1/r of the stress is left; above 1").above(1).must(),
+            s.r, d.r);
+  io.number(Key("m", "Pa", "energy density below which softening is not full").least(0), s.m, d.m);
+  io.number(Key("beta", "", "the same as a share of the largest energy density").least(0), s.beta, d.beta);
+}
+
 void describe(Visitor& io, SceneFibers& f) {
   const SceneFibers d;
   io.about("fibers",
@@ -142,6 +152,9 @@ void describe(Visitor& io, MaterialDef& m) {
       m.prony);
   io.word({"static_time", "", "what the time of a statics is to `prony`: everything has relaxed, or seconds"},
           m.static_time, d.static_time);
+  io.optional_object(
+      {"mullins", "", "[softening](materials/mullins.md) of an isochoric law by what it has borne"},
+      m.mullins, m.mullins.r != 0);
   io.list({"fibers", "", "families of [fibers](materials/fibers.md)"}, m.fibers);
   io.optional_object({"compression_penalty", "", "against single crushed elements"}, m.compression_penalty,
                      m.compression_penalty.modulus != 0);

@@ -9,6 +9,7 @@
 
 #include "catch.h"
 #include "contract/scene_probe.h"
+#include "engine/elements/solid_pool.h"
 #include "support/meshes.h"
 
 using namespace isochor;
@@ -26,6 +27,12 @@ void for_every_pool(const Check& check) {
       check(PoolProbe(*pool, scene));
     }
   }
+}
+
+// Grows with time; a balance of energy is taken under one growth.
+bool grows(const StencilPool& pool) {
+  const auto* solid = dynamic_cast<const SolidPool*>(&pool);
+  return solid && solid->growth();
 }
 
 bool untouched(std::span<const Vec3> slots) {
@@ -402,4 +409,24 @@ TEST_CASE("forces, pressures and tensions of gauges go with the multipliers, siz
     }
   }
   CHECK(linear > 20);
+}
+
+TEST_CASE("pools that change with time by themselves say so, and the others do not change") {
+  int moved = 0;
+  for_every_pool([&](const PoolProbe& probe) {
+    const MovingStencils* moving = probe.pool().facets().moving;
+    const test::Slots first = probe.evaluate_at(0);
+    for (const double t : {0.3, 1.0}) {
+      const test::Slots now = probe.evaluate_at(t);
+      const bool same =
+          test::same_bits(first.energy, now.energy) && test::same_bits(first.value, now.value) &&
+          test::same_bits(first.gradient, now.gradient) && test::same_bits(first.jacobian, now.jacobian);
+      if (same || grows(probe.pool())) continue;
+      REQUIRE(moving);
+      CHECK(moving->moves(0, t));
+      CHECK_FALSE(moving->moves(t, t));
+      ++moved;
+    }
+  });
+  CHECK(moved > 0);
 }

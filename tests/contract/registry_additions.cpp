@@ -5,6 +5,7 @@
 #include "contract/registry.h"
 #include "engine/elements/element_guard.h"
 #include "engine/elements/material_model.h"
+#include "isochor/mullins.h"
 #include "isochor/viscoelastic.h"
 
 namespace test {
@@ -352,6 +353,75 @@ void add_element_guard(std::vector<MaterialCase>& out) {
   out.push_back(c);
 }
 
+// For points that keep a given number.
+class KeptAt final : public isochor::Material {
+ public:
+  KeptAt(std::shared_ptr<const isochor::Material> material, double kept)
+      : material_(std::move(material)), kept_(kept) {}
+  std::string_view name() const override { return material_->name(); }
+  void describe(isochor::Fingerprint& f) const override { material_->describe(f); }
+  void evaluate(isochor::Want want, const isochor::PointBatch& points,
+                isochor::ResponseBatch& response) const override {
+    material_->evaluate(want, with(points), response);
+  }
+  void spectrum(const isochor::PointBatch& points, const isochor::Svd3& svd,
+                isochor::Spectrum& out) const override {
+    material_->spectrum(with(points), svd, out);
+  }
+
+ private:
+  isochor::PointBatch with(isochor::PointBatch points) const {
+    for (double& k : points.kept) k = kept_;
+    return points;
+  }
+  std::shared_ptr<const isochor::Material> material_;
+  double kept_;
+};
+
+// Integral of erf((most - w) / c) from 0 to W < most by Simpson's rule; its derivatives are those of the end.
+double integral_of_erf(double W, double most, double c) {
+  constexpr int n = 2000;
+  double sum = 0;
+  for (int i = 0; i <= n; ++i) {
+    const double weight = i == 0 || i == n ? 1 : (i % 2 == 0 ? 2 : 4);
+    sum += weight * std::erf((most - W * i / n) / c);
+  }
+  return sum * W / (3 * n);
+}
+
+// Points that have had nothing, less and more than they have now.
+void add_mullins(std::vector<MaterialCase>& out) {
+  constexpr double r = 1.6, m = 0.4, beta = 0.2;
+  const auto base = made(isochor::isochoric_neo_hookean(constants()));
+  const MaterialPtr soft = made(isochor::with_mullins_softening(base, {r, m, beta}));
+  for (const double most : {0.0, 0.15, 30.0}) {
+    for (const bool complete : {false, true}) {
+      MaterialCase c;
+      c.name =
+          "isochoric_neo_hookean softened at " + std::to_string(most) + (complete ? ", with its volume" : "");
+      c.covers = {"materials/mullins"};
+      c.material = std::make_shared<KeptAt>(complete ? soft->complete().value() : soft->distortional(), most);
+      const double kappa = complete ? 1 / base->inverse_bulk() : 0;
+      c.scale = complete ? 10 : 1;
+      c.energy = [=](const Gradient9& F) {
+        const HyperDual J = determinant(F), d = J - 1.0;
+        const HyperDual W = 0.5 * kMu * (trace_C(F) * exp(-2.0 / 3 * log(J)) - 3.0);
+        const double scale = m + beta * most;
+        HyperDual soft_by;
+        if (most > 0 && W.a < most) {
+          const double u = (most - W.a) / scale;
+          soft_by = W.chain(-integral_of_erf(W.a, most, scale) / r, -std::erf(u) / r,
+                            2 / std::sqrt(M_PI) * std::exp(-u * u) / (scale * r));
+        } else if (most > 0) {
+          soft_by = HyperDual(-integral_of_erf(most, most, scale) / r);
+        }
+        return W + soft_by + 0.5 * kappa * d * d;
+      };
+      out.push_back(c);
+    }
+  }
+}
+
 }  // namespace
 
 void add_material_additions(std::vector<MaterialCase>& out) {
@@ -361,6 +431,7 @@ void add_material_additions(std::vector<MaterialCase>& out) {
   add_viscoelastic(out);
   add_poisson_field(out);
   add_element_guard(out);
+  add_mullins(out);
 }
 
 }  // namespace test

@@ -96,6 +96,15 @@ Slots PoolProbe::evaluate(Want want, const std::vector<Vec3>& x, const std::vect
   return slots;
 }
 
+Slots PoolProbe::evaluate_at(double t) const {
+  Slots slots(pool_);
+  StencilRequest r =
+      request(Want::gradient, Definiteness::exact, 0, pool_.stencils(), scene_.x(), multiplier_);
+  r.increment.t0 = r.increment.t1 = t;
+  pool_.evaluate(r, slots.spans());
+  return slots;
+}
+
 Slots PoolProbe::evaluate_split(const std::vector<Vec3>& x, Index grain) const {
   Slots slots(pool_);
   for (Index end = pool_.stencils(); end > 0; end -= grain) {

@@ -68,6 +68,8 @@ class PoolProbe {
   // In ranges of `grain` stencils, last range first.
   Slots evaluate_split(const std::vector<isochor::Vec3>& x, isochor::Index grain) const;
   Slots evaluate_range(const std::vector<isochor::Vec3>& x, isochor::Index begin, isochor::Index end) const;
+  // With what moves by itself where it is at time t.
+  Slots evaluate_at(double t) const;
   void evaluate_into(Slots& slots, isochor::Want want, isochor::Definiteness definiteness,
                      const std::vector<isochor::Vec3>& x) const;
   Eigen::MatrixXd dense_hessian(const Slots& slots, isochor::Index stencil) const;

@@ -34,7 +34,7 @@ _OWN = {
     "isochoric_extended": ("young", "poisson", "mu", "lambda", "bulk", "bulk_choice", "threshold"),
 }
 _ELASTIC = ("young", "poisson", "mu", "lambda", "bulk", "bulk_choice")
-_ALL = ("density", "region", "prony", "static_time", "fibers", "compression_penalty", "stiffness_field", "poisson_field")
+_ALL = ("density", "region", "prony", "static_time", "mullins", "fibers", "compression_penalty", "stiffness_field", "poisson_field")
 
 
 class Material:

@@ -34,6 +34,9 @@ struct ContactFrame {
   Vec3 to_world(const Vec3& y) const { return c + A * y; }
 };
 ContactFrame frame_of(const ObstaclePose& pose);
+inline bool same_pose(const ContactFrame& a, const ContactFrame& b) {
+  return a.c == b.c && a.A.m == b.A.m;
+}
 ContactFrame frame_of(const ControlPoints& points, std::span<const Vec3> x);
 
 // What else free rigid bodies share with the contacts that name them.

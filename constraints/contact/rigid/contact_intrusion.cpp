@@ -8,10 +8,6 @@ namespace isochor {
 
 namespace {
 
-bool same_pose(const ContactFrame& a, const ContactFrame& b) {
-  return a.c == b.c && a.A.m == b.A.m;
-}
-
 // The first place of the straight way from y0, which is outside, to y1 inside where it is on the surface.
 Vec3 first_on_surface(const Obstacle& shape, const Vec3& y0, const Vec3& y1) {
   const Vec3 way = y1 - y0;

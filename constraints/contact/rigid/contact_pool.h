@@ -6,7 +6,9 @@
 
 namespace isochor {
 
-class ContactPool final : public FrictionalPool<RigidGeometry>, public BarrierStencils {
+class ContactPool final : public FrictionalPool<RigidGeometry>,
+                          public BarrierStencils,
+                          public MovingStencils {
  public:
   ContactPool(std::string name, RigidGeometry geometry, FrictionLaw friction, bool coupled)
       : FrictionalPool(std::move(name), std::move(geometry), {friction}, coupled) {}
@@ -14,9 +16,11 @@ class ContactPool final : public FrictionalPool<RigidGeometry>, public BarrierSt
   bool sees_rigid_motion() const override { return !geometry().shape_points(); }
   StencilFacets facets() const override {
     StencilFacets f = friction_facets();
+    if (!geometry().shape_points()) f.moving = this;
     if (geometry().shape().shape != ObstacleShape::plane) f.barrier = this;
     return f;
   }
+  bool moves(double t0, double t1) const override { return geometry().moves(t0, t1); }
   // contact_intrusion.cpp
   Index passing(const StencilIncrement& increment, std::span<const Vec3> x,
                 std::span<Vec3> stopped) const override;

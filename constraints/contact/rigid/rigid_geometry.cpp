@@ -39,6 +39,10 @@ Mat3 made_definite(const Mat3& m, Definiteness policy) {
 
 }  // namespace
 
+bool PlacedShape::moves(double t0, double t1) const {
+  return moves() && !same_pose(frame(t0, {}), frame(t1, {}));
+}
+
 void RigidGeometry::add(Index node, double stick, double size, const Vec3& inset) {
   std::vector<Index> nodes = {node};
   if (shape_points()) nodes.insert(nodes.end(), shape_points()->node.begin(), shape_points()->node.end());

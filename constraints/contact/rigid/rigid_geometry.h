@@ -35,6 +35,7 @@ class PlacedShape {
     return points_ ? frame_of(*points_, x) : frame_of(pose_of(shape_, track(), t));
   }
   bool moves() const { return !points_ && !track().keys.empty(); }
+  bool moves(double t0, double t1) const;
 
  private:
   const PoseTrack& track() const { return live_ ? live_->track() : shape_.motion; }
