@@ -172,7 +172,15 @@ void draw_memory(const ChaosDraft& draft, const std::string& region, MaterialDef
   const bool isochoric =
       m.law == MaterialLaw::isochoric_neo_hookean ||
       (m.law >= MaterialLaw::isochoric_mooney_rivlin && m.law <= MaterialLaw::isochoric_holmes_mow);
-  if (!isochoric || m.poisson_field.given() || !random.chance(0.4)) return;
+  if (!isochoric || m.poisson_field.given()) return;
+  if (!random.chance(0.4)) {
+    // Softening has a sequence of its own.
+    ChaosRandom later = draft.random("softening " + std::to_string(draft.bodies.size()) + " " + region);
+    if (later.chance(0.5))
+      m.mullins = {later.between(1.05, 4), later.chance(0.5) ? draft.young * later.decades(-3, 1) : 0,
+                   later.between(0.01, 1)};
+    return;
+  }
   const int terms = random.whole(1, 3);
   for (int i = 0; i < terms; ++i)
     m.prony.push_back({random.between(0.01, 0.9) / terms, draft.duration * random.decades(-3, 3)});

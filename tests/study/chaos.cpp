@@ -155,6 +155,7 @@ TEST_CASE("a few hundred scenes have everything that is on the shelf") {
                            "self-contact",
                            "fibers",
                            "memory",
+                           "Mullins softening",
                            "compression penalty",
                            "fields of constants",
                            "traction, current area",
