@@ -218,7 +218,7 @@ void add_viscoelastic(std::vector<MaterialCase>& out) {
     return trace_C(F) / exp(2.0 / 3 * log(determinant(F))) - 3.0;
   };
   MaterialCase c;
-  c.covers = {"materials/viscoelastic"};
+  c.covers = {"materials/viscoelastic", "materials/isochoric_base"};
   c.name = "isochoric_neo_hookean with memory, what stays";
   c.material = model->distortional();
   c.energy = [=](const Gradient9& F) { return 0.25 * kMu * strain(F); };

@@ -88,7 +88,7 @@ TEST_CASE("a seed gives the same scene on every machine") {
     all.add(&one, sizeof one);
   }
   // Written down once; another number here means that all seeds have other scenes now.
-  CHECK(all.value() == 0x56743410b192cbab);
+  CHECK(all.value() == 0x8b4b3685a5a6d9d9);
 }
 
 TEST_CASE("scenes that are written and read are the same") {
@@ -403,7 +403,9 @@ TEST_CASE("seeds that told something are as they should be") {
 TEST_CASE("what gets nowhere ends by the work that it took") {
   // An ascent that fails in every increment of a step is not tried for long. It was tried in each of
   // thousands that the control of errors made ever shorter.
-  const ChaosOutcome o = run_chaos_scene(chaos_scene(1272, ChaosSize::small()), {scratch(), false});
+  ChaosScene chaos = chaos_scene(1272, ChaosSize::small());
+  for (TractionDef& t : chaos.scene.tractions) t.current_area = t.lagged = false;  // refused with an ascent
+  const ChaosOutcome o = run_chaos_scene(chaos, {scratch(), false});
   INFO(o.kind << ": " << o.reason);
   CHECK(o.verdict == ChaosVerdict::stopped);
   CHECK(o.iterations < 1500);
