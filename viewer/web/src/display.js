@@ -91,10 +91,8 @@ export class Display {
     state.looks.forEach((look, part) => { if (stage.body.looks[part] !== look) stage.setLook(part, look); });
     stage.body.setGhost(state.ghost);
     stage.body.setEdges(state.edges);
-    const plane = this.cutPlane();
-    stage.body.setCut(plane);
     this.showArrows();
-    stage.overlays.setCut(plane);
+    stage.setCut(this.cutPlane());
     this.tellArrows();
     stage.invalidate();
   }

@@ -92,6 +92,7 @@ export class Ground {
     this.given = height;
     this.height = height ?? Infinity;
     this.setParts(() => true);
+    this.cut = null;
     this.shadows = [new Shadow(FAR), new Shadow(NEAR)];
     const geometry = new THREE.BufferGeometry();
     this.corners = new THREE.BufferAttribute(new Float32Array(12), 3);
@@ -117,6 +118,9 @@ export class Ground {
     this.hasTable = parts.some((part, p) => part.obstacle && shown(p) && !this.isThick(p));
   }
 
+  /** plane: as Body.setCut() takes it; what a cut takes away casts no shadow. Takes effect with the next shape. */
+  setCut(plane) { this.cut = plane; }
+
   /** Red, green, blue and strength, 0 to 1. */
   setFloor(color) { this.floor = color; }
 
@@ -139,7 +143,7 @@ export class Ground {
   }
 
   setShape(x) {
-    const { run: { triangles }, up, across: [a, b], samples: { triangle, weights, share }, shadows: [far, near] } = this;
+    const { cut, run: { triangles }, up, across: [a, b], samples: { triangle, weights, share }, shadows: [far, near] } = this;
     if (this.given === null) {
       const first = this.height === Infinity;
       for (let i = up; i < x.length; i += 3) if (x[i] < this.height) this.height = x[i];
@@ -158,6 +162,11 @@ export class Ground {
         area = Math.abs((x[j + a] - x[i + a]) * (x[k + b] - x[i + b]) - (x[j + b] - x[i + b]) * (x[k + a] - x[i + a]));
       }
       const p = weights[2 * s], q = weights[2 * s + 1], o = 1 - p - q;
+      if (cut) {
+        let side = cut[3];
+        for (let c = 0; c < 3; ++c) side += cut[c] * (o * x[i + c] + p * x[j + c] + q * x[k + c]);
+        if (side > 0) continue;
+      }
       const above = Math.max(0, o * x[i + up] + p * x[j + up] + q * x[k + up] - this.height);
       const u = o * x[i + a] + p * x[j + a] + q * x[k + a], v = o * x[i + b] + p * x[j + b] + q * x[k + b];
       far.add(u, v, above, area * share[s]);

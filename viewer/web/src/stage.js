@@ -180,14 +180,23 @@ export class Stage {
 
   /** Shadows follow what moves as often as a part of the time allows, and what rests at once. */
   shade(moving) {
-    this.unshaded = this.body.shadedShape !== this.body.positions;
+    this.unshaded = this.body.shadedShape !== this.body.positions || this.cutMoved;
     const start = performance.now();
     if (!this.unshaded || (moving && start - this.shading.at < SHADING * this.shading.cost)) return;
     this.ground.setShape(this.body.positions);
     this.body.shade();
-    this.unshaded = false;
+    this.unshaded = this.cutMoved = false;
     const end = performance.now();
     this.shading = { at: end, cost: end - start };
+  }
+
+  /** plane: as Body.setCut() takes it. */
+  setCut(plane) {
+    this.body.setCut(plane);
+    this.overlays.setCut(plane);
+    this.cutMoved = this.cutMoved || JSON.stringify(plane) !== JSON.stringify(this.ground.cut);
+    this.ground.setCut(plane);
+    this.invalidate();
   }
 
   /** look: 'shown', 'faded' or 'hidden'. */
