@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/base/text.h"
+#include "engine/scene/free_motions.h"
 #include "engine/solve/evaluator.h"
 #include "engine/world/gradient_parts.h"
 
@@ -62,8 +63,15 @@ Result<OutputSeed> World::Impl::Equilibrium::seed_of(const Output& output) {
   seed.x.resize(w.state.x.size());
   seed.through.resize(w.state.x.size());
   seed.multiplier.assign(w.state.lambda.size(), 0.0);
-  for (const Vec3& v : output.vectors) {
-    if (!finite(v)) return Error{"gradients: an output has a vector that is not finite"};
+  for (std::size_t k = 0; k < output.vectors.size(); ++k) {
+    if (!finite(output.vectors[k])) {
+      return Error{"gradients: the vector " + std::to_string(k) + " is " + point_text(output.vectors[k]) +
+                   "; give finite numbers"};
+    }
+  }
+  if (!finite(output.force) || !finite(output.moment)) {
+    return Error{"gradients: the force is " + point_text(output.force) + " and the moment " +
+                 point_text(output.moment) + "; give finite numbers"};
   }
   if (output.kind == Output::Kind::energy) {
     seed_energy(seed);

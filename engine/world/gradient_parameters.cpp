@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/base/text.h"
+#include "engine/scene/free_motions.h"
 #include "engine/world/gradient_parts.h"
 
 namespace isochor {
@@ -66,7 +67,8 @@ Parameter Parameter::cell_stiffness(BodyId body) {
   return p;
 }
 
-Parameter Parameter::constant_of(EffectId effect, double value, std::function<EffectPtr(double)> definition) {
+Parameter Parameter::constant_of(EffectId effect, double value,
+                                 std::function<Result<EffectPtr>(double)> definition) {
   Parameter p;
   p.kind = Kind::constant;
   p.effect = effect;
@@ -176,6 +178,14 @@ Result<CellTerms> World::Impl::Equilibrium::cell_terms(BodyId body) const {
 
 Result<Equations> World::Impl::Equilibrium::change_by(const Parameter& p) {
   Equations change(w.system(), gauges.size());
+  if (!finite(p.vector) || !finite(p.point)) {
+    return Error{"gradients: the vector is " + point_text(p.vector) + " and the point " +
+                 point_text(p.point) + " m; give finite numbers"};
+  }
+  if (!(p.step >= 0) || !std::isfinite(p.step)) {
+    return Error{"gradients: step = " + number(p.step) +
+                 "; give how far to move the value, a positive number, or 0 for the usual"};
+  }
   switch (p.kind) {
     case Parameter::Kind::amount:
       return change_by_amount(p);
@@ -289,12 +299,14 @@ Result<Description> World::Impl::Equilibrium::beside(const Parameter& p, double 
     if (!made) return made.failure();
     if (auto r = next.builder.set_material(p.body, p.region, made.value()); !r) return r.failure();
   } else if (p.kind == Parameter::Kind::constant) {
-    EffectPtr made = p.definition(value);
-    if (!made) return Error{"the definition of the effect is empty"};
-    auto checked = made->check();
+    auto made = p.definition(value);
+    refused_by_law = !made;
+    if (!made) return made.failure();
+    if (!made.value()) return Error{"the definition of the effect is empty"};
+    auto checked = made.value()->check();
     refused_by_law = !checked;
     if (!checked) return checked.failure();
-    next.sources[static_cast<std::size_t>(p.effect)] = std::move(made);
+    next.sources[static_cast<std::size_t>(p.effect)] = std::move(made).value();
   } else {
     std::vector<Vec3> by = p.motion;
     for (Vec3& v : by) v = value * v;

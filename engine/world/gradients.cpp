@@ -175,6 +175,35 @@ Result<bool> choose_adjoint(const GradientQuery& q, bool unsymmetric) {
   return q.outputs.size() <= q.parameters.size();
 }
 
+// The error with the place of what it is about: "gradients: outputs[2]: ...".
+Error placed(const Error& error, const char* list, std::size_t k) {
+  constexpr std::string_view call = "gradients: ";
+  if (error.kind == ErrorKind::no_memory || !error.message.starts_with(call)) return error;
+  return Error{std::string(call) + list + "[" + std::to_string(k) +
+               "]: " + error.message.substr(call.size())};
+}
+
+// Effects that a query names, and gauges among its outputs.
+Result<std::vector<GaugeName>> look_up(const World& world, const GradientQuery& query) {
+  const auto check = [&](EffectId e, const char* list, std::size_t k) -> Result<void> {
+    if (auto r = world.check(e); !r) return placed(Error{"gradients: " + r.error()}, list, k);
+    return {};
+  };
+  std::vector<GaugeName> gauges;
+  for (std::size_t j = 0; j < query.outputs.size(); ++j) {
+    const Output& o = query.outputs[j];
+    if (o.kind != Output::Kind::gauge && o.kind != Output::Kind::reaction) continue;
+    if (auto r = check(o.effect, "outputs", j); !r) return r.failure();
+    if (o.kind == Output::Kind::gauge) gauges.push_back({static_cast<Index>(o.effect), o.quantity});
+  }
+  for (std::size_t k = 0; k < query.parameters.size(); ++k) {
+    const Parameter& p = query.parameters[k];
+    if (p.kind != Parameter::Kind::amount && p.kind != Parameter::Kind::constant) continue;
+    if (auto r = check(p.effect, "parameters", k); !r) return r.failure();
+  }
+  return gauges;
+}
+
 }  // namespace
 
 Result<Gradients> World::gradients(const GradientQuery& query) try {
@@ -188,22 +217,10 @@ Result<Gradients> World::gradients(const GradientQuery& query) try {
         "statics() or continuation()"};
   }
   if (auto r = check_memory(w.said.builder); !r) return r.failure();
-  const auto check_effect = [&](EffectId e) -> Result<void> {
-    if (auto r = check(e); !r) return Error{"gradients: " + r.error()};
-    return {};
-  };
+  auto gauges = look_up(*this, query);
+  if (!gauges) return gauges.failure();
   Impl::Equilibrium eq(w);
-  for (const Output& o : query.outputs) {
-    const bool of_effect = o.kind == Output::Kind::gauge || o.kind == Output::Kind::reaction;
-    if (!of_effect) continue;
-    if (auto r = check_effect(o.effect); !r) return r.failure();
-    if (o.kind == Output::Kind::gauge) eq.gauges.push_back({static_cast<Index>(o.effect), o.quantity});
-  }
-  for (const Parameter& p : query.parameters) {
-    const bool of_effect = p.kind == Parameter::Kind::amount || p.kind == Parameter::Kind::constant;
-    if (!of_effect) continue;
-    if (auto r = check_effect(p.effect); !r) return r.failure();
-  }
+  eq.gauges = std::move(gauges).value();
   const auto adjoint = choose_adjoint(query, w.system().has_lag());
   if (!adjoint) return adjoint.failure();
   if (auto r = eq.linearize(query.unstable); !r) return r.failure();
@@ -211,9 +228,9 @@ Result<Gradients> World::gradients(const GradientQuery& query) try {
   Gradients out;
   out.adjoint = adjoint.value();
   std::vector<OutputSeed> seeds;
-  for (const Output& o : query.outputs) {
-    auto seed = eq.seed_of(o);
-    if (!seed) return seed.failure();
+  for (std::size_t j = 0; j < query.outputs.size(); ++j) {
+    auto seed = eq.seed_of(query.outputs[j]);
+    if (!seed) return placed(seed.failure(), "outputs", j);
     out.values.push_back(seed.value().value);
     seeds.push_back(std::move(seed).value());
   }
@@ -229,13 +246,13 @@ Result<Gradients> World::gradients(const GradientQuery& query) try {
     if (is_cells(p)) {
       for (std::size_t j = 0; j < seeds.size(); ++j) {
         auto cells = eq.by_cells(seeds[j], adjoints[j], p.body);
-        if (!cells) return cells.failure();
+        if (!cells) return placed(cells.failure(), "parameters", k);
         out.by[j][k] = std::move(cells).value();
       }
       continue;
     }
     auto change = eq.change_by(p);
-    if (!change) return change.failure();
+    if (!change) return placed(change.failure(), "parameters", k);
     if (!out.adjoint) {
       Equations load(w.system(), eq.gauges.size());
       load.add(-1, change.value());

@@ -65,7 +65,7 @@ struct ISOCHOR_API Parameter {
   Vec3 point{}, vector{};
   std::vector<Vec3> motion;  // one a node
   std::function<Result<MaterialPtr>(double)> law;
-  std::function<EffectPtr(double)> definition;
+  std::function<Result<EffectPtr>(double)> definition;
 
   // The amount of an effect, in its unit.
   static Parameter amount_of(EffectId effect);
@@ -83,7 +83,8 @@ struct ISOCHOR_API Parameter {
   // The same of each cell by itself: as many numbers as the mesh of the body has cells. By the adjoint alone.
   static Parameter cell_stiffness(BodyId body);
   // A constant of an effect: `definition` makes it, and definition(value) must be the effect as it is.
-  static Parameter constant_of(EffectId effect, double value, std::function<EffectPtr(double)> definition);
+  static Parameter constant_of(EffectId effect, double value,
+                               std::function<Result<EffectPtr>(double)> definition);
   // Rest positions move by p times `motion`, one vector a node of World::mesh(body).
   static Parameter shape(BodyId body, std::vector<Vec3> motion);
 };

@@ -2,6 +2,7 @@
 // parameter moved, solves it to the last digits and takes differences.
 #include "isochor/gradients.h"
 
+#include <limits>
 #include <set>
 
 #include "support/hollow_block.h"
@@ -305,6 +306,18 @@ TEST_CASE("what has no gradient is refused by name", "[gradients]") {
                                             })),
              ContainsSubstring("not what the scene has"));
   CHECK_THAT(asked(tip, Parameter::material(block.body, "", 0, nullptr)), ContainsSubstring("no function"));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THAT(asked(tip, Parameter::gravity({0, nan, 1})),
+             ContainsSubstring("parameters[0]: the vector is (0, nan, 1)"));
+  CHECK_THAT(asked(Output::reaction(block.clamp, {nan, 0, 0}), weight),
+             ContainsSubstring("outputs[0]: the force is (nan"));
+  CHECK_THAT(asked(Output::node(block.body, 0, {0, 0, nan}), weight),
+             ContainsSubstring("outputs[0]: the vector 0 is"));
+  CHECK_THAT(asked(tip, Parameter::constant_of(block.cable, 900,
+                                               [](double) -> isochor::Result<isochor::EffectPtr> {
+                                                 return isochor::Error{"cables are sold out"};
+                                               })),
+             ContainsSubstring("cables are sold out"));
   // A state that nobody solved for.
   World fresh = make_world(tight_statics());
   const BodyId body = add_body(fresh, hollow_block(isochor::CellType::tet4), isochor::Element::tet4,
