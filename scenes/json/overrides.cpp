@@ -75,6 +75,20 @@ Result<Json*> enter(Json& at, const Segment& s, const std::string& so_far) {
 
 }  // namespace
 
+Result<Json*> value_at(Json& json, const std::string& path, const std::string& whole) {
+  auto segments = split(path);
+  if (!segments) return segments.failure();
+  Json* at = &json;
+  std::string so_far;
+  for (const Segment& s : segments.value()) {
+    auto next = enter(*at, s, so_far.empty() ? whole : so_far);
+    if (!next) return next.failure();
+    at = next.value();
+    so_far += s.is_index ? "[" + s.key + "]" : (so_far.empty() ? "" : ".") + s.key;
+  }
+  return at;
+}
+
 Result<void> apply_override(Json& json, const std::string& assignment) {
   const auto equals = assignment.find('=');
   const std::string who = "--set " + assignment + ": ";
@@ -82,18 +96,10 @@ Result<void> apply_override(Json& json, const std::string& assignment) {
     return Error{who + "expected path=value, as in cavities[0].amount=8000"};
   }
   const std::string path = assignment.substr(0, equals), text = assignment.substr(equals + 1);
-  auto segments = split(path);
-  if (!segments) return Error{who + segments.error()};
-  Json* at = &json;
-  std::string so_far;
-  for (const Segment& s : segments.value()) {
-    auto next = enter(*at, s, so_far.empty() ? "the scene" : so_far);
-    if (!next) return Error{who + next.error()};
-    at = next.value();
-    so_far += s.is_index ? "[" + s.key + "]" : (so_far.empty() ? "" : ".") + s.key;
-  }
+  const auto at = value_at(json, path, "the scene");
+  if (!at) return Error{who + at.error()};
   Json value = Json::parse(text, nullptr, false);
-  *at = value.is_discarded() ? Json(text) : std::move(value);
+  *at.value() = value.is_discarded() ? Json(text) : std::move(value);
   return {};
 }
 
