@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "isochor/gradients.h"
 #include "isochor/isochor.h"
 #include "isochor/world.h"
 
@@ -35,6 +36,14 @@ struct KeptResponse {
   std::vector<iso_wrench> reactions;
 };
 
+// What pointers of an iso_gradient_table lead to.
+struct KeptGradients {
+  Gradients told;
+  std::vector<double> jacobian;
+  std::vector<std::size_t> columns;
+  std::vector<const char*> undecided;
+};
+
 struct Answers {
   StepReport report;
   std::vector<std::byte> saved;
@@ -50,6 +59,7 @@ struct Answers {
   std::vector<iso_contact_pair> contact_pairs;
   std::vector<KeptResponse> kept_responses;
   std::vector<iso_response> responses;
+  KeptGradients gradients;
   std::vector<std::string> kept_warnings;
   std::vector<const char*> warnings;
 };

@@ -435,6 +435,93 @@ typedef struct iso_response {
 ISO_API iso_status iso_derivatives(iso_world* world, const iso_input* inputs, size_t count,
                                    const iso_response** out);
 
+/* A number that an equilibrium shows; docs/derivatives.md tells of all of them. Members that are not said to
+ * be of a kind are not looked at. */
+enum {
+  ISO_OUTPUT_POSITIONS = 0,      /* the sum of vector . x over `nodes`: every linear function of positions */
+  ISO_OUTPUT_DISTANCE = 1,       /* half the sum of |x - vector|^2 over `nodes` [m^2] */
+  ISO_OUTPUT_MATERIAL_POINT = 2, /* direction . x of the point of the body that is at `point` at rest */
+  ISO_OUTPUT_GAUGE = 3,          /* `quantity` of `effect`, as iso_gauge_value() */
+  ISO_OUTPUT_REACTION = 4,       /* force . F + moment . M of the reaction (F, M) of `effect` */
+  ISO_OUTPUT_ELASTIC_ENERGY = 5  /* of the world [J] */
+};
+typedef struct iso_output {
+  size_t size;
+  int32_t kind; /* ISO_OUTPUT_... */
+  iso_body body;
+  const int32_t* nodes;  /* `count` of the body; null: all of them */
+  const double* vectors; /* `count` vectors, one a node; `stride` in bytes, 0: 3 doubles */
+  size_t count, stride;
+  double point[3], direction[3]; /* [m] */
+  iso_effect effect;
+  const char* quantity;
+  double force[3], moment[3];
+} iso_output;
+
+/* The keys of a material or an effect where a number has this value, one object of JSON; null: there is no
+ * such thing. The text must stay until the next call of the function. */
+typedef const char* (*iso_keys_fn)(void* user, double value);
+
+/* A number of the scene, or a list of them. */
+enum {
+  ISO_PARAMETER_AMOUNT_OF = 0,      /* of `effect`, in its unit */
+  ISO_PARAMETER_FORCE_AT = 1,       /* a factor on a dead force `vector` [N] at `point` of `body` */
+  ISO_PARAMETER_GRAVITY = 2,        /* along `vector`, whose length is the unit [m/s^2] */
+  ISO_PARAMETER_DENSITY = 3,        /* of `region` of `body` [kg/m^3] */
+  ISO_PARAMETER_MATERIAL = 4,       /* a number among the keys of the material of `region` of `body` */
+  ISO_PARAMETER_STIFFNESS = 5,      /* a factor on the stiffness of `region` of `body`, at 1 */
+  ISO_PARAMETER_CELL_STIFFNESS = 6, /* the same of each cell of `body`: as many numbers; not by tangents */
+  ISO_PARAMETER_CONSTANT_OF = 7,    /* a number among the keys of `effect`, whose kind is `effect_kind` */
+  ISO_PARAMETER_SHAPE = 8           /* rest positions of `body` move by this times `motion` */
+};
+typedef struct iso_parameter {
+  size_t size;
+  int32_t kind; /* ISO_PARAMETER_... */
+  iso_effect effect;
+  iso_body body;
+  const char* region; /* null or empty: all of the body */
+  double point[3], vector[3];
+  const double* motion; /* `count` vectors, one a node of iso_body_mesh(); `stride` in bytes, 0: 3 doubles */
+  size_t count, stride;
+  /* Of a material or an effect: its keys as they are, as in iso_set_material() and iso_replace(), and the one
+   * that is meant, "young" or "terms[0].mu"; or in their place a function that makes the keys, and the value
+   * that the scene was made with. */
+  const char *keys, *key, *effect_kind;
+  iso_keys_fn make;
+  void* user;
+  double value;
+  double step; /* how far it is moved where a difference is taken; 0: 1e-4 of its value */
+} iso_parameter;
+
+/* Adjoint: one solve an output; tangent: one solve a parameter. */
+enum { ISO_GRADIENTS_AUTOMATIC = 0, ISO_GRADIENTS_ADJOINT = 1, ISO_GRADIENTS_TANGENT = 2 };
+typedef struct iso_gradient_query {
+  size_t size;
+  const iso_output* outputs;
+  size_t output_count;
+  const iso_parameter* parameters;
+  size_t parameter_count;
+  int32_t mode;     /* ISO_GRADIENTS_... */
+  int32_t unstable; /* not 0: of equilibria that are unstable under fixed loads, too */
+} iso_gradient_query;
+
+typedef struct iso_gradient_table {
+  size_t size;
+  const double* values; /* of the outputs */
+  size_t output_count;
+  const double* jacobian; /* `column_count` derivatives an output */
+  size_t column_count;
+  const size_t* columns;        /* where each parameter begins, and at last `column_count` */
+  int32_t regular;              /* 0: of one side only, or with friction, which `note` says in words */
+  const char* note;             /* */
+  const char* const* undecided; /* effects whose rows are about to touch or to let go */
+  size_t undecided_count;
+  int32_t adjoint; /* how it was found */
+} iso_gradient_table;
+/* Gradients of outputs of an equilibrium of statics by parameters of the scene. The state stays as it is.
+ * Pointers are good until the next call of iso_gradients(). */
+ISO_API iso_status iso_gradients(iso_world* world, const iso_gradient_query* query, iso_gradient_table* out);
+
 typedef struct iso_world_size {
   size_t size;
   int32_t nodes, displacement_unknowns, multipliers, matrix_size;

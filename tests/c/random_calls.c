@@ -23,6 +23,48 @@ static double number(void) {
   return all[dice(10)];
 }
 
+/* Outputs and parameters of all kinds and of none, by what may be there. */
+static iso_status gradients(iso_world* world, iso_body body, iso_effect effect, const double* v) {
+  static const char* texts[] = {"young", "{\"young\": 1e4, \"poisson\": 0.4}", "volume", "", "nowhere", NULL};
+  const int32_t nodes[] = {0, (int32_t)dice(40) - 5};
+  iso_output output;
+  iso_parameter parameter;
+  iso_gradient_query query;
+  iso_gradient_table told;
+  memset(&output, 0, sizeof output);
+  memset(&parameter, 0, sizeof parameter);
+  memset(&query, 0, sizeof query);
+  memset(&told, 0, sizeof told);
+  told.size = dice(6) == 0 ? dice(64) : sizeof told;
+  query.size = sizeof query;
+  output.size = dice(6) == 0 ? dice(64) : sizeof output;
+  parameter.size = dice(6) == 0 ? dice(64) : sizeof parameter;
+  output.kind = (int32_t)dice(8) - 1;
+  output.body = parameter.body = body;
+  output.effect = parameter.effect = effect;
+  output.nodes = dice(4) == 0 ? NULL : nodes;
+  output.vectors = v;
+  output.count = dice(2);
+  output.quantity = texts[dice(6)];
+  memcpy(output.direction, v, sizeof output.direction);
+  memcpy(output.force, v, sizeof output.force);
+  parameter.kind = (int32_t)dice(11) - 1;
+  memcpy(parameter.vector, v, sizeof parameter.vector);
+  parameter.motion = v;
+  parameter.count = dice(2);
+  parameter.keys = texts[dice(6)];
+  parameter.key = texts[dice(6)];
+  parameter.effect_kind = texts[dice(6)];
+  parameter.step = dice(4) == 0 ? number() : 0;
+  query.outputs = dice(6) == 0 ? NULL : &output;
+  query.output_count = dice(2);
+  query.parameters = dice(6) == 0 ? NULL : &parameter;
+  query.parameter_count = dice(2);
+  query.mode = (int32_t)dice(5) - 1;
+  query.unstable = (int32_t)dice(2);
+  return iso_gradients(world, &query, &told);
+}
+
 static iso_status one_call(iso_world* world, iso_world* other, iso_body* bodies, iso_effect* effects) {
   static const char* kinds[] = {"volume", "cavity", "dirichlet", "nonsense", "damping", "", NULL};
   static const char* keys[] = {
@@ -47,7 +89,7 @@ static iso_status one_call(iso_world* world, iso_world* other, iso_body* bodies,
   memset(&measures, 0, sizeof measures);
   report.size = dice(4) == 0 ? dice(64) : sizeof report;
   measures.size = dice(4) == 0 ? dice(16) : sizeof measures;
-  switch (dice(24)) {
+  switch (dice(25)) {
     case 0:
       return iso_add(world, kinds[dice(7)], keys[dice(7)], dice(5) == 0 ? NULL : &effects[dice(3)]);
     case 1:
@@ -95,6 +137,8 @@ static iso_status one_call(iso_world* world, iso_world* other, iso_body* bodies,
       return iso_compile(world, NULL);
     case 22:
       return iso_follow(world, number(), NULL);
+    case 23:
+      return gradients(world, body, effect, v);
     default:
       return iso_state_hash(world, dice(6) == 0 ? NULL : (uint64_t*)&hash);
   }
