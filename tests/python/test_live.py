@@ -41,6 +41,13 @@ def test_several_keys_at_once_and_one_taken_away():
     assert world.advance(0.01).converged
 
 
+def test_a_change_of_another_key_leaves_the_amount():
+    rope = iso.cable(points=[(0, 0, 0), (0, 0, 1)], amount=0.9)
+    assert rope.with_keys(stiffness=5.0).keys["amount"] == 0.9
+    assert "amount" not in iso.cavity(surfaces="x", control="volume").with_keys(ambient=1e5).keys
+    assert iso.cavity(surfaces="x", amount=400).with_keys(control="volume_ratio").keys["amount"] == 1
+
+
 def test_selections_change_too():
     made = Block()
     made.clamp.surfaces = ["z1", "z0"]

@@ -36,6 +36,10 @@ class Effect:
     def with_keys(self, **changes: Any) -> Effect:
         """The same effect with some keys changed; None takes a key away."""
         made = globals()[self.kind](self.body, **changes) if _has_body(self.kind) else globals()[self.kind](**changes)
+        # The amount stays what it is, and is not that of an effect that was told nothing of it; but another control has
+        # other amounts.
+        if not {"amount", "control"} & set(changes):
+            made.keys.pop("amount", None)
         merged = {**self.keys, **made.keys}
         if "where" in self.keys and "where" in made.keys:
             merged["where"] = {**self.keys["where"], **made.keys["where"]}
