@@ -39,10 +39,16 @@ def test_control_brings_the_tip_to_its_targets(capsys):
     assert printed.count("target") == 3
 
 
+def test_a_fit_finds_the_moduli_of_layers_and_a_design_its_thickness(capsys):
+    (off, steps, steps_of_design), printed = run("fit_layers", capsys)
+    assert off < 1e-7 and steps < 12 and steps_of_design < 8
+    assert printed.startswith("moduli 60.000 and 240.000 kPa")
+
+
 def test_there_is_no_example_that_no_test_runs():
-    assert {file.stem for file in EXAMPLES.glob("*.py")} == {"inflate", "grip", "control_tip"}
+    assert {file.stem for file in EXAMPLES.glob("*.py")} == {"inflate", "grip", "control_tip", "fit_layers"}
 
 
-@pytest.mark.parametrize("name", ["inflate", "grip", "control_tip"])
+@pytest.mark.parametrize("name", ["inflate", "grip", "control_tip", "fit_layers"])
 def test_examples_say_what_they_do(name):
     assert (EXAMPLES / f"{name}.py").read_text().startswith('"""')

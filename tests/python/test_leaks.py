@@ -4,6 +4,7 @@ import gc
 import os
 import resource
 
+import numpy as np
 import pytest
 
 import isochor as iso
@@ -36,6 +37,33 @@ def test_ten_thousand_worlds_leave_nothing():
     grown = resident() - before
     # A hundred bytes a world would be a megabyte; a leaked world has some hundred kilobytes.
     assert grown < 8e6, f"{grown / 1e6:.1f} MB more after 10,000 worlds"
+
+
+def test_gradients_functions_and_exceptions_leave_nothing():
+    world = iso.World(scheme="statics", threads=1)
+    body = world.add_body(iso.box_mesh(divisions=(1, 1, 1)), iso.neo_hookean(young=1e5, poisson=0.3), element="tet4")
+    clamp = world.add(iso.dirichlet(body, surfaces="z0"))
+    world.advance(1)
+    kept = np.zeros(1000)  # what a function holds on to must go with it
+
+    def churn():
+        large = kept.copy()
+        out = [iso.Output.node(body, 7, (0, 0, 1)), iso.Output.positions(body, None, (0, 0, 1))]
+        law = lambda young: iso.neo_hookean(young=young + large[0], poisson=0.3)
+        held = world.gradients(out, [clamp, iso.Parameter.material(body, law, value=1e5), iso.Parameter.cell_stiffness(body)])
+        try:
+            world.gradients(out, [iso.Parameter.material(body, lambda young: large[2000], value=1e5)])
+        except IndexError:
+            pass
+        return held.by[2]
+
+    for _ in range(100):
+        churn()
+    gc.collect()
+    before = resident()
+    last = [churn() for _ in range(500)][-1]
+    gc.collect()
+    assert resident() - before < 2e6 and last.shape == (2, 6)
 
 
 def test_scenes_clones_and_exceptions_leave_nothing():

@@ -27,6 +27,7 @@ from .batch import WorldBatch
 from .effects import *
 from .environment import Box, Environment
 from .errors import Cancelled, Error, NotConverged
+from .gradients import Gradients, Output, Parameter
 from .materials import *
 from .mesh import Mesh, box_mesh, read_mesh
 from .reports import (
@@ -66,12 +67,15 @@ __all__ = [
     "Fields",
     "Finding",
     "Gauge",
+    "Gradients",
     "LiveEffect",
     "Mesh",
     "MeshReport",
     "Metric",
     "NotConverged",
     "Orientation",
+    "Output",
+    "Parameter",
     "Progress",
     "Reaction",
     "Response",

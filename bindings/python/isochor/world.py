@@ -8,7 +8,7 @@ from typing import Any, Callable, Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _isochor, keys as _keys
+from . import _isochor, gradients as _gradients, keys as _keys
 from .effects import Effect, arguments
 from .errors import Cancelled, Error, NotConverged
 from .materials import Material
@@ -653,6 +653,24 @@ class World:
             raw["reactions"] = {e.name: Reaction(*two) for e, two in zip(self._effects, raw["reactions"])}
             responses.append(Response(**raw))
         return responses
+
+    def gradients(
+        self,
+        outputs: Sequence[_gradients.Output],
+        parameters: Sequence[_gradients.Parameter | LiveEffect | tuple[Body, ArrayLike, ArrayLike]],
+        *,
+        mode: str = "automatic",
+        unstable: bool = False,
+    ) -> _gradients.Gradients:
+        """Numbers that an equilibrium of statics shows, and their derivatives by what the scene is made of.
+
+        ``outputs``: made by :class:`isochor.Output`. ``parameters``: made by :class:`isochor.Parameter`; an effect
+        stands for its amount, (body, point at rest [m], force [N]) for a factor on the force. ``mode``: "adjoint"
+        takes one solve an output, "tangent" one a parameter, "automatic" whichever solves less. ``unstable``: of
+        equilibria that are unstable under fixed loads, too. The state stays as it is.
+        Raises :class:`isochor.Error` for what has no gradient: docs/derivatives.md.
+        """
+        return _gradients.ask(self, outputs, parameters, mode, unstable)
 
     @property
     def constitutive_residual(self) -> float:

@@ -19,5 +19,6 @@ void bind_changing(HostedWorldClass& world);
 void bind_stepping(HostedWorldClass& world);
 void bind_reading(HostedWorldClass& world);
 void bind_answers(HostedWorldClass& world);
+void bind_gradients(HostedWorldClass& world);
 
 }  // namespace isochor::python

@@ -53,6 +53,7 @@ void bind_worlds(py::module_& module) {
   bind_stepping(world);
   bind_reading(world);
   bind_answers(world);
+  bind_gradients(world);
 }
 
 }  // namespace isochor::python

@@ -1,0 +1,339 @@
+"""Outputs and parameters of ``World.gradients``, and what it answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Callable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import effects as _effects
+from . import keys as _keys
+from . import materials as _materials
+from . import world as _world
+from .errors import Error
+
+_MODES = ("automatic", "adjoint", "tangent")
+
+
+class Output:
+    """A number that an equilibrium shows; its functions make the kinds that there are.
+
+    Linear functions of positions are ``positions``, and of those ``node`` and ``material_point``; ``distance`` is
+    the quadratic one. Arrays are looked at by ``World.gradients``.
+    """
+
+    __slots__ = ("kind", "_of", "_given")
+
+    def __init__(self, kind: str, of: Any, *given: Any) -> None:
+        self.kind = kind
+        self._of = of
+        self._given = given
+
+    @staticmethod
+    def positions(body: _world.Body, nodes: ArrayLike | None, weights: ArrayLike) -> Output:
+        """The sum of weight . x over nodes [m]: every linear function of positions.
+
+        ``nodes``: shape (n,); None: all nodes of the body. ``weights``: shape (n, 3), or (3,) for every node the same.
+        """
+        return Output("positions", _body(body, "Output.positions"), _listed(nodes), weights, _ndim(weights) == 1)
+
+    @staticmethod
+    def node(body: _world.Body, node: int, direction: ArrayLike) -> Output:
+        """direction . x of a node [m]."""
+        return Output("node", _body(body, "Output.node"), node, direction)
+
+    @staticmethod
+    def material_point(body: _world.Body, point: ArrayLike, direction: ArrayLike) -> Output:
+        """direction . x of the material point that is at ``point`` at rest [m]."""
+        return Output("material_point", _body(body, "Output.material_point"), point, direction)
+
+    @staticmethod
+    def distance(body: _world.Body, nodes: ArrayLike | None, targets: ArrayLike) -> Output:
+        """Half the sum of |x - target|^2 over nodes [m^2]; ``nodes`` and ``targets`` as of ``positions``."""
+        return Output("distance", _body(body, "Output.distance"), _listed(nodes), targets, _ndim(targets) == 1)
+
+    @staticmethod
+    def gauge(effect: _world.LiveEffect, quantity: str) -> Output:
+        """A gauge of an effect: "volume" or "pressure" of a cavity, "length" or "tension" of a cable."""
+        return Output("gauge", _effect(effect, "Output.gauge"), str(quantity))
+
+    @staticmethod
+    def reaction(effect: _world.LiveEffect, force: ArrayLike, moment: ArrayLike = (0.0, 0.0, 0.0)) -> Output:
+        """force . F + moment . M of the reaction of a support: its force F [N] and moment M about the origin [N m]."""
+        return Output("reaction", _effect(effect, "Output.reaction"), force, moment)
+
+    @staticmethod
+    def elastic_energy() -> Output:
+        """Of the world [J], as ``World.energies().elastic``."""
+        return Output("elastic_energy", None)
+
+    def _raw(self) -> tuple[Any, ...]:
+        return (self.kind, None if self._of is None else self._of._id, *self._given)
+
+    def __repr__(self) -> str:
+        return f"<isochor.Output {self.kind}{_whose(self._of)}>"
+
+
+class Parameter:
+    """A number of the scene, or a list of them; its functions make the kinds that there are."""
+
+    __slots__ = ("kind", "_of", "_given", "_step")
+
+    def __init__(self, kind: str, of: Any, *given: Any, step: float = 0.0) -> None:
+        self.kind = kind
+        self._of = of
+        self._given = given
+        self._step = _world._number(step, f"Parameter.{kind}: step")
+
+    @staticmethod
+    def amount_of(effect: _world.LiveEffect, *, step: float = 0.0) -> Parameter:
+        """The amount of an effect, in its unit. In a list of parameters the effect itself says the same.
+
+        ``step``: how far it is moved where a difference is taken; 0: 1e-4 of the amount, or of 1.
+        """
+        return Parameter("amount_of", _effect(effect, "Parameter.amount_of"), step=step)
+
+    @staticmethod
+    def force_at(body: _world.Body, point: ArrayLike, force: ArrayLike) -> Parameter:
+        """A factor on a dead force [N] at a point of a body at rest [m], as (body, point, force) in a list."""
+        return Parameter("force_at", _body(body, "Parameter.force_at"), point, force)
+
+    @staticmethod
+    def gravity(direction: ArrayLike) -> Parameter:
+        """Gravity along a direction, whose length is the unit [m/s^2]."""
+        return Parameter("gravity", None, direction)
+
+    @staticmethod
+    def density(body: _world.Body, region: str = "") -> Parameter:
+        """The density of a region, or of all of the body [kg/m^3]."""
+        return Parameter("density", _body(body, "Parameter.density"), str(region))
+
+    @staticmethod
+    def material(
+        body: _world.Body,
+        what: str | Callable[[float], _materials.Material],
+        *,
+        value: float | None = None,
+        region: str | None = None,
+        step: float = 0.0,
+    ) -> Parameter:
+        """A constant of a material.
+
+        ``what``: a key of it, "young" or "terms[0].mu", or a function that makes the material of a ``value``, which
+        is where the constant is now: what it makes there must be what the body has. It may refuse values on one side
+        by raising :class:`isochor.Error`. ``region``: None where the body has one material. ``step``: how far the
+        value is moved where a difference is taken; 0: 1e-4 of it.
+        """
+        who = "Parameter.material"
+        keys, region = _material_of(_body(body, who), region)
+        if callable(what):
+            return Parameter("material", body, region, _value(value, who), _maker(what, _material_text), step=step)
+        law = str(keys.get("law", "neo_hookean"))
+        known = {key.python_name: key for key in _materials.arguments(law)}
+        path, keys = _key(what, keys, known, law, who)
+        return Parameter("material", body, region, path, _keys.text(keys), step=step)
+
+    @staticmethod
+    def stiffness(body: _world.Body, region: str = "") -> Parameter:
+        """A factor on the stiffness of a region, or of all of the body, at 1: energy and bulk modulus."""
+        return Parameter("stiffness", _body(body, "Parameter.stiffness"), str(region))
+
+    @staticmethod
+    def cell_stiffness(body: _world.Body) -> Parameter:
+        """The same of each cell by itself: as many numbers as the mesh has cells. By the adjoint alone."""
+        return Parameter("cell_stiffness", _body(body, "Parameter.cell_stiffness"))
+
+    @staticmethod
+    def constant_of(
+        effect: _world.LiveEffect,
+        what: str | Callable[[float], _effects.Effect],
+        *,
+        value: float | None = None,
+        step: float = 0.0,
+    ) -> Parameter:
+        """A constant of an effect: a key of it, or a function that makes the effect of a ``value``, as of ``material``."""
+        who = "Parameter.constant_of"
+        world, kind = _effect(effect, who).world, effect.kind
+        keys = world._with_body(effect.description)
+        if callable(what):
+            text = lambda made: _effect_text(world, effect, made)
+            return Parameter("constant_of", effect, kind, _value(value, who), _maker(what, text), step=step)
+        known = {key.python_name: key for key, inner in _effects.arguments(kind) if not inner}
+        path, keys = _key(what, keys, known, kind, who)
+        return Parameter("constant_of", effect, kind, path, _keys.text(keys), step=step)
+
+    @staticmethod
+    def shape(body: _world.Body, motion: ArrayLike) -> Parameter:
+        """Rest positions move by this times ``motion``, one vector a node, shape (n, 3).
+
+        Of shape (m, n, 3) they are m numbers.
+        """
+        return Parameter("shape", _body(body, "Parameter.shape"), motion, _ndim(motion) == 3)
+
+    def _raw(self) -> list[tuple[Any, ...]]:
+        """As many as it has numbers; one for those of cells."""
+        whose = None if self._of is None else self._of._id
+        if self._several():
+            return [(self.kind, whose, self._step, motion) for motion in self._given[0]]
+        return [(self.kind, whose, self._step, *self._given)]
+
+    def _several(self) -> bool:
+        return self.kind == "shape" and self._given[1]
+
+    def _is_number(self) -> bool:
+        return self.kind != "cell_stiffness" and not self._several()
+
+    def __repr__(self) -> str:
+        return f"<isochor.Parameter {self.kind}{_whose(self._of)}>"
+
+
+@dataclass(frozen=True)
+class Gradients:
+    """Outputs of an equilibrium, and their derivatives by parameters."""
+
+    values: np.ndarray
+    """(outputs,)"""
+    jacobian: np.ndarray
+    """(outputs, numbers): d output / d number, of all numbers of all parameters in their order"""
+    by: tuple[np.ndarray, ...]
+    """The columns of each parameter: (outputs,), and (outputs, numbers) of cells and of several shapes; views"""
+    regular: bool
+    """False: of one side only, since rows are about to touch or to let go, or with friction; ``note`` says which."""
+    note: str
+    undecided: tuple[str, ...]
+    """Names of the effects of such rows"""
+    adjoint: bool
+    """How it was found: one solve an output, else one a parameter"""
+
+
+def ask(world: _world.World, outputs: Any, parameters: Any, mode: str, unstable: bool) -> Gradients:
+    """``World.gradients``."""
+    if mode not in _MODES:
+        raise Error(f'gradients: mode is "{mode}"; give "automatic", "adjoint" or "tangent"')
+    shown = [_output(one, k) for k, one in enumerate(_list(outputs, "outputs"))]
+    asked = [_parameter(one, k) for k, one in enumerate(_list(parameters, "parameters"))]
+    raw = [numbers for parameter in asked for numbers in parameter._raw()]
+    places = [k for k, parameter in enumerate(asked) for _ in parameter._raw()]
+    told = world._ready().gradients([one._raw() for one in shown], raw, places, _MODES.index(mode), bool(unstable))
+    widths = told.pop("widths")
+    jacobian = told["jacobian"].reshape(len(shown), sum(widths))
+    by, column, at = [], 0, 0
+    for parameter in asked:
+        count = len(parameter._raw())
+        width = sum(widths[at : at + count])
+        by.append(jacobian[:, column] if parameter._is_number() else jacobian[:, column : column + width])
+        column, at = column + width, at + count
+    return Gradients(**{**told, "jacobian": jacobian, "by": tuple(by), "undecided": tuple(told["undecided"])})
+
+
+def _list(given: Any, name: str) -> Sequence[Any]:
+    if isinstance(given, (list, tuple)):
+        return given
+    raise Error(f"gradients: {name} is a value of type {type(given).__name__}; give a list")
+
+
+def _output(given: Any, place: int) -> Output:
+    if isinstance(given, Output):
+        return given
+    raise Error(
+        f"gradients: outputs[{place}]: a value of type {type(given).__name__}; give an isochor.Output, as "
+        "isochor.Output.node() makes"
+    )
+
+
+def _parameter(given: Any, place: int) -> Parameter:
+    if isinstance(given, Parameter):
+        return given
+    if isinstance(given, _world.LiveEffect):
+        return Parameter.amount_of(given)
+    if isinstance(given, tuple) and len(given) == 3 and isinstance(given[0], _world.Body):
+        return Parameter.force_at(*given)
+    raise Error(
+        f"gradients: parameters[{place}]: a value of type {type(given).__name__}; give an isochor.Parameter, an effect "
+        "for its amount, or (body, point, force)"
+    )
+
+
+def _body(given: Any, who: str) -> _world.Body:
+    if isinstance(given, _world.Body):
+        return given
+    raise Error(f"{who}: a value of type {type(given).__name__}; give a body of a world")
+
+
+def _effect(given: Any, who: str) -> _world.LiveEffect:
+    if isinstance(given, _world.LiveEffect):
+        return given
+    raise Error(f"{who}: a value of type {type(given).__name__}; give an effect of a world")
+
+
+def _ndim(values: Any) -> int:
+    """Of what numpy makes an array of; -1: of what it does not, which is refused where it is read."""
+    try:
+        return int(np.ndim(values))
+    except ValueError:
+        return -1
+
+
+def _listed(nodes: ArrayLike | None) -> Any:
+    return list(nodes) if isinstance(nodes, range) else nodes
+
+
+def _whose(of: Any) -> str:
+    return "" if of is None else f' of "{of.name}"'
+
+
+def _value(value: Any, who: str) -> float:
+    if value is None:
+        raise Error(f"{who}: value is None; give the number that the scene was made with")
+    return _world._number(value, f"{who}: value")
+
+
+def _material_of(body: _world.Body, region: str | None) -> tuple[dict[str, Any], str]:
+    """The keys of the material of a region, or of the one that there is, and the region's name."""
+    described = {str(keys.get("region", "")): keys for keys in body._described["materials"]}
+    if region is None and len(described) == 1:
+        ((region, keys),) = described.items()
+        return dict(keys), region
+    if region is not None and (region in described or "" in described):
+        return dict(described.get(region, described.get(""))), region  # type: ignore[arg-type]
+    names = " and ".join(f'"{name}"' if name else "all others" for name in described)
+    asked = "" if region is None else f'there is no region "{region}"; '
+    raise Error(f'Parameter.material: {asked}body "{body.name}" has materials of the regions {names}; name the region')
+
+
+def _key(
+    path: Any, keys: dict[str, Any], known: dict[str, _keys.Key], kind: str, who: str
+) -> tuple[str, dict[str, Any]]:
+    """A key as scene files have it, and the keys with what it is by default where it was left out."""
+    if not isinstance(path, str):
+        raise Error(f"{who}: a value of type {type(path).__name__}; give a key or a function")
+    name = path.split(".")[0].split("[")[0]
+    if name not in known:
+        raise _keys.unknown(kind, name, known)
+    key = known[name]
+    if key.kind in ("word", "text", "flag"):
+        raise Error(f'{who}: key "{name}" is a {key.kind}; name one that has a number')
+    if key.name not in keys and isinstance(key.default, (int, float)):
+        keys = {**keys, key.name: key.default}
+    return key.name + path[len(name) :], keys
+
+
+def _maker(make: Callable[[float], Any], text: Callable[[Any], str]) -> Callable[[float], str]:
+    return lambda value: text(make(value))
+
+
+def _material_text(made: Any) -> str:
+    if not isinstance(made, _materials.Material):
+        raise Error(f"the function made a value of type {type(made).__name__}; it is to return a material")
+    return _keys.text(made.keys)
+
+
+def _effect_text(world: _world.World, live: _world.LiveEffect, made: Any) -> str:
+    if not isinstance(made, _effects.Effect):
+        raise Error(f"the function made a value of type {type(made).__name__}; it is to return an effect")
+    if made.kind != live.kind:
+        raise Error(f'the function made a {made.kind} in the place of the {live.kind} "{live.name}"; it is to make one')
+    keys = world._with_body(made)
+    return _keys.text({**keys, "name": live.name})

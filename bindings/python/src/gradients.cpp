@@ -1,0 +1,220 @@
+// Gradients of an equilibrium: outputs and parameters as tuples that begin with their kind, as gradients.py
+// of the package makes them.
+#include "isochor/gradients.h"
+
+#include <optional>
+
+#include "hosted_world.h"
+#include "reports.h"
+#include "scenes/parameters_by_keys.h"
+
+namespace isochor::python {
+
+namespace {
+
+// One entry of a list of the query, and what sentences about it begin with.
+struct Entry {
+  HostedWorld& world;
+  py::tuple given;
+  std::string who;
+
+  std::string kind() const { return given[0].cast<std::string>(); }
+  std::string about(const char* what) const { return who + ": " + what; }
+
+  template <class Id>
+  Id id() const {
+    const Id one = given[1].cast<Id>();
+    if (auto r = world.glance("gradients", [&](World& w) { return w.check(one); }); !r)
+      throw Refused(who + ": " + r.error());
+    return one;
+  }
+  Index node_count() const {
+    const BodyId body = id<BodyId>();
+    return world.glance("gradients", [&](World& w) { return static_cast<Index>(w.positions(body).size()); });
+  }
+};
+
+// The numbers of nodes; None: all.
+std::vector<Index> nodes_in(const Entry& e) {
+  const Index count = e.node_count();
+  if (!e.given[2].is_none()) return indices_in(e.given[2], e.about("nodes"), 0, count);
+  std::vector<Index> all(static_cast<std::size_t>(count));
+  for (Index n = 0; n < count; ++n) all[static_cast<std::size_t>(n)] = n;
+  return all;
+}
+
+// One vector a node, or, as the package says, one for all of them.
+std::vector<Vec3> vectors_in(const Entry& e, const char* what, std::size_t nodes) {
+  if (e.given[4].cast<bool>()) return std::vector<Vec3>(nodes, vector_in(e.given[3], e.about(what)));
+  return points_in(e.given[3], e.about(what));
+}
+
+Output output_of(const Entry& e) {
+  const std::string kind = e.kind();
+  if (kind == "elastic_energy") return Output::elastic_energy();
+  if (kind == "gauge") return Output::gauge(e.id<EffectId>(), e.given[2].cast<std::string>());
+  if (kind == "reaction") {
+    return Output::reaction(e.id<EffectId>(), vector_in(e.given[2], e.about("force")),
+                            vector_in(e.given[3], e.about("moment")));
+  }
+  const auto body = e.id<BodyId>();
+  if (kind == "material_point") {
+    return Output::material_point(body, vector_in(e.given[2], e.about("point")),
+                                  vector_in(e.given[3], e.about("direction")));
+  }
+  if (kind == "node") {
+    const py::list one(1);
+    one[0] = e.given[2];
+    const auto node = indices_in(one, e.about("nodes"), 0, e.node_count());
+    return Output::node(body, node.front(), vector_in(e.given[3], e.about("direction")));
+  }
+  std::vector<Index> nodes = nodes_in(e);
+  if (kind == "distance") {
+    std::vector<Vec3> targets = vectors_in(e, "targets", nodes.size());
+    return Output::distance(body, std::move(nodes), std::move(targets));
+  }
+  std::vector<Vec3> weights = vectors_in(e, "weights", nodes.size());
+  return Output::positions(body, std::move(nodes), std::move(weights));
+}
+
+// Functions of Python that make a material or an effect: called with the interpreter lock. isochor.Error is
+// how one says that there is none of a value; what else it raises ends the call, and is raised by it.
+class Makers {
+ public:
+  std::function<Result<std::string>(double)> function(py::object make) {
+    // Copies are made and dropped without the lock.
+    const auto kept = std::make_shared<py::object>(std::move(make));
+    functions_.push_back(kept);
+    return [this, kept](double value) -> Result<std::string> {
+      if (raised_) return Error{"a function raised an exception"};
+      const py::gil_scoped_acquire locked;
+      try {
+        return (*kept)(value).cast<std::string>();
+      } catch (py::error_already_set& error) {
+        if (error.matches(py::module_::import("isochor.errors").attr("Error")))
+          return Error{py::str(error.value()).cast<std::string>()};
+        raised_.emplace(error);
+        return Error{"a function raised an exception"};
+      }
+    };
+  }
+  void raise_again() {
+    if (raised_) throw py::error_already_set(*raised_);
+  }
+
+ private:
+  std::vector<std::shared_ptr<py::object>> functions_;
+  std::optional<py::error_already_set> raised_;
+};
+
+// Of (..., path, keys) or (..., value, function).
+NumberInKeys number_of(const Entry& e, Makers& makers) {
+  const py::handle first = e.given[4];
+  if (!py::isinstance<py::str>(first))
+    return {first.cast<double>(), makers.function(py::reinterpret_borrow<py::object>(e.given[5]))};
+  auto number = number_in_keys(e.given[5].cast<std::string>(), first.cast<std::string>());
+  if (!number) throw Refused(e.who + ": " + number.error());
+  return std::move(number).value();
+}
+
+Parameter constant_of(const Entry& e, Makers& makers) {
+  const auto effect = e.id<EffectId>();
+  PartContext context = e.world.glance("gradients", [&](World& w) {
+    PartContext names = e.world.meaning().in(w);
+    std::erase(names.names_taken, w.effect_name(effect));
+    return names;
+  });
+  return constant_by_keys(effect, e.given[3].cast<std::string>(), number_of(e, makers), std::move(context));
+}
+
+Parameter parameter_of(const Entry& e, Makers& makers) {
+  const std::string kind = e.kind();
+  if (kind == "amount_of") return Parameter::amount_of(e.id<EffectId>());
+  if (kind == "gravity") return Parameter::gravity(vector_in(e.given[3], e.about("direction")));
+  if (kind == "constant_of") return constant_of(e, makers);
+  const auto body = e.id<BodyId>();
+  if (kind == "force_at") {
+    return Parameter::force_at(body, vector_in(e.given[3], e.about("point")),
+                               vector_in(e.given[4], e.about("force")));
+  }
+  if (kind == "shape") return Parameter::shape(body, points_in(e.given[3], e.about("motion")));
+  if (kind == "cell_stiffness") return Parameter::cell_stiffness(body);
+  std::string region = e.given[3].cast<std::string>();
+  if (kind == "density") return Parameter::density(body, std::move(region));
+  if (kind == "stiffness") return Parameter::stiffness(body, std::move(region));
+  return material_by_keys(body, std::move(region), number_of(e, makers), "");
+}
+
+GradientQuery query_of(HostedWorld& world, const py::list& outputs, const py::list& parameters,
+                       const py::list& places, Makers& makers) {
+  const auto entry = [&](const py::handle& given, const char* list, std::size_t place) {
+    return Entry{world, given.cast<py::tuple>(),
+                 "gradients: " + (list + ("[" + std::to_string(place)) + "]")};
+  };
+  GradientQuery query;
+  for (std::size_t j = 0; j < outputs.size(); ++j)
+    query.outputs.push_back(output_of(entry(outputs[j], "outputs", j)));
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const Entry e = entry(parameters[k], "parameters", places[k].cast<std::size_t>());
+    query.parameters.push_back(parameter_of(e, makers));
+    query.parameters.back().step = e.given[2].cast<double>();
+  }
+  return query;
+}
+
+// All numbers of an output side by side: dJ/dp of (outputs, columns), flat.
+py::dict dict_of(Gradients&& told, const std::vector<Index>& numbers_of) {
+  std::vector<double> jacobian;
+  for (const auto& row : told.by) {
+    for (const auto& numbers : row) jacobian.insert(jacobian.end(), numbers.begin(), numbers.end());
+  }
+  py::list widths, undecided;
+  for (const Index width : numbers_of) widths.append(width);
+  for (const std::string& name : told.undecided) undecided.append(name);
+  py::dict out;
+  out["values"] = array_of(std::move(told.values), 0);
+  out["jacobian"] = array_of(std::move(jacobian), 0);
+  out["widths"] = widths;
+  out["regular"] = told.regular;
+  out["note"] = told.note;
+  out["undecided"] = undecided;
+  out["adjoint"] = told.adjoint;
+  return out;
+}
+
+// Parameters of several numbers are several of the engine's: its sentences with the place in the user's list.
+Error at_its_place(Error error, const py::list& places) {
+  const std::string start = "gradients: parameters[";
+  if (!error.message.starts_with(start)) return error;
+  const std::size_t end = error.message.find(']');
+  const auto number = static_cast<std::size_t>(std::stoul(error.message.substr(start.size())));
+  error.message = start + std::to_string(places[number].cast<std::size_t>()) + error.message.substr(end);
+  return error;
+}
+
+// `places`: of each parameter, where in the user's list it is.
+py::dict gradients(HostedWorld& world, const py::list& outputs, const py::list& parameters,
+                   const py::list& places, int mode, bool unstable) {
+  need(world.work("gradients", [](World& w) { return w.compile(); }));
+  Makers makers;
+  GradientQuery query = query_of(world, outputs, parameters, places, makers);
+  query.mode = static_cast<GradientQuery::Mode>(mode);
+  query.unstable = unstable;
+  std::vector<Index> numbers_of;
+  auto told = world.work("gradients", [&](World& w) {
+    for (const Parameter& p : query.parameters)
+      numbers_of.push_back(p.kind == Parameter::Kind::cells ? w.mesh(p.body).cell_count() : 1);
+    return w.gradients(query);
+  });
+  makers.raise_again();
+  if (!told) raise(at_its_place(told.failure(), places));
+  return dict_of(std::move(told).value(), numbers_of);
+}
+
+}  // namespace
+
+void bind_gradients(HostedWorldClass& world) {
+  world.def("gradients", &gradients);
+}
+
+}  // namespace isochor::python
