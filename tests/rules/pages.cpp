@@ -117,16 +117,16 @@ TEST_CASE("files that comments of the build name are there") {
   CHECK(names > 5);
 }
 
-TEST_CASE("C++ in pages is part of a file that is compiled") {
+TEST_CASE("C++ and C in pages are parts of files that are compiled") {
   std::string compiled;
   for (const char* folder : {"examples", "tests/contract"}) {
     for (const path& file : tree::files(tree::root / folder)) {
-      if (tree::is_code(file)) compiled += squeezed(tree::text_of(file)) + "\n";
+      if (tree::is_code(file) || file.extension() == ".c") compiled += squeezed(tree::text_of(file)) + "\n";
     }
   }
   int seen = 0;
   for (const Block& block : blocks()) {
-    if (block.language != "cpp") continue;
+    if (block.language != "cpp" && block.language != "c") continue;
     ++seen;
     INFO(tree::name_of(block.page) << " has code that is in no file of examples/ or tests/contract/:\n"
                                    << block.text);
