@@ -163,8 +163,9 @@ Result<bool> choose_adjoint(const GradientQuery& q, bool unsymmetric) {
   const bool wants_adjoint = q.mode == GradientQuery::Mode::adjoint;
   if (unsymmetric && (cells || wants_adjoint)) {
     return Error{
-        "gradients: with friction the matrix is unsymmetric, and the adjoint is not among what gradients() "
-        "knows; ask for tangents, of whole regions in place of cells"};
+        "gradients: with friction, or a pressure on faces with a free rim, the matrix is unsymmetric, and "
+        "the "
+        "adjoint is not among what gradients() knows; ask for tangents, of whole regions in place of cells"};
   }
   if (cells && q.mode == GradientQuery::Mode::tangent)
     return Error{

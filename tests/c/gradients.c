@@ -13,13 +13,13 @@ static void must(int holds, const char* what) {
   exit(1);
 }
 
-enum { YOUNG, DENSITY, GRAVITY, PRESSURE, PULL, PUSH, STRETCH, KNOBS };
+enum { YOUNG, DENSITY, GRAVITY, TRACTION, SPRING, PUSH, STRETCH, KNOBS };
 enum { OUTPUTS = 6, PARAMETERS = 9, NODES = 36 };
 
 typedef struct scene {
   iso_world* world;
   iso_body body;
-  iso_effect clamp, rows, air, spring;
+  iso_effect clamp, rows, pull, spring;
   double knob[KNOBS];
   double motion[3 * NODES], vectors[3 * NODES];
   char material[100], spring_keys[200];
@@ -46,11 +46,11 @@ static void corner(const double* knob, double* x) {
   for (c = 0; c < 3; ++c) x[c] = tip[c] + knob[STRETCH] * by[c];
 }
 
-/* A bar that is held, heavy, pressed on its end, pushed, and pulled by a spring. */
+/* A bar that is held, heavy, pulled at its end, pushed at a corner, and held by a spring. */
 static void make(scene* s, const double* knob) {
   const double lower[3] = {0, 0, 0}, upper[3] = {2, 1, 1};
   const int32_t divisions[3] = {3, 2, 2};
-  const char *wall = "x0", *end = "x1";
+  const char* wall = "x0";
   char message[500];
   double* points;
   size_t n, c;
@@ -78,14 +78,16 @@ static void make(scene* s, const double* knob) {
   snprintf(s->spring_keys, sizeof s->spring_keys,
            "{\"name\": \"spring\", \"from\": [2, 0, 2], \"points\": [[1.5, 0.4, 0.6]], \"control\": "
            "\"length_ratio\", \"amount\": 0.9, \"stiffness\": %.17g}",
-           knob[PULL]);
+           knob[SPRING]);
   ok(s, iso_add_soft_body(s->world, "bar", mesh, knob[YOUNG], 0.45, knob[DENSITY], &s->body));
   iso_mesh_free(mesh);
   ok(s, iso_add_volume(s->world, s->body, &s->rows));
   ok(s, iso_add_support(s->world, "clamp", s->body, &wall, 1, &s->clamp));
-  ok(s, iso_add_cavity(s->world, "air", s->body, &end, 1, &s->air));
+  ok(s, iso_add(s->world, "traction",
+                "{\"name\": \"pull\", \"surface\": \"x1\", \"traction\": [1, 0.3, 0.2], \"amount\": 1}",
+                &s->pull));
   ok(s, iso_add(s->world, "cable", s->spring_keys, &s->spring));
-  ok(s, iso_set_amount(s->world, s->air, knob[PRESSURE]));
+  ok(s, iso_set_amount(s->world, s->pull, knob[TRACTION]));
   for (c = 0; c < 3; ++c) force[c] = knob[PUSH] * push[c];
   corner(knob, pushed);
   ok(s, iso_add_force_at(s->world, s->body, pushed, force));
@@ -137,7 +139,7 @@ static void make_parameters(scene* s, iso_parameter* p) {
     p[k].kind = (int32_t)k;
     p[k].body = s->body;
   }
-  p[ISO_PARAMETER_AMOUNT_OF].effect = s->air;
+  p[ISO_PARAMETER_AMOUNT_OF].effect = s->pull;
   memcpy(p[ISO_PARAMETER_FORCE_AT].point, tip, sizeof tip);
   memcpy(p[ISO_PARAMETER_FORCE_AT].vector, push, sizeof push);
   p[ISO_PARAMETER_GRAVITY].vector[2] = 1;
@@ -147,7 +149,7 @@ static void make_parameters(scene* s, iso_parameter* p) {
   p[ISO_PARAMETER_CONSTANT_OF].effect_kind = "cable";
   p[ISO_PARAMETER_CONSTANT_OF].make = spring_of;
   p[ISO_PARAMETER_CONSTANT_OF].user = &calls;
-  p[ISO_PARAMETER_CONSTANT_OF].value = s->knob[PULL];
+  p[ISO_PARAMETER_CONSTANT_OF].value = s->knob[SPRING];
   p[ISO_PARAMETER_SHAPE].motion = s->motion;
   p[ISO_PARAMETER_SHAPE].count = NODES;
 }
@@ -198,7 +200,8 @@ static void difference(const double* knob, int which, double* out) {
 static const double knobs[KNOBS] = {1e4, 1000, -2, 200, 900, 1, 0};
 
 static void every_output_by_every_parameter(void) {
-  static const int knob_of[PARAMETERS] = {PRESSURE, PUSH, GRAVITY, DENSITY, YOUNG, YOUNG, -1, PULL, STRETCH};
+  static const int knob_of[PARAMETERS] = {TRACTION, PUSH, GRAVITY, DENSITY, YOUNG,
+                                          YOUNG,    -1,   SPRING,  STRETCH};
   scene s;
   iso_output o[OUTPUTS];
   iso_parameter p[PARAMETERS], numbers[PARAMETERS];
@@ -318,7 +321,7 @@ static void outputs_that_are_refused(void) {
   ASK(o[0].body = other.body, "outputs[0]: ");
   ASK(o[0].body = other.body, "another world");
   ASK(o[4].effect = other.clamp, "outputs[4]: ");
-  ASK(p[0].effect = other.air, "parameters[0]: ");
+  ASK(p[0].effect = other.pull, "parameters[0]: ");
   ASK(memset(&p[3].body, 0, sizeof p[3].body), "parameters[3]: the body is no id");
   ASK(o[0].count = 3, "outputs[0]: 3 vectors for the 36 nodes of body \"bar\"");
   ASK(o[0].vectors = NULL, "outputs[0]: vectors is a null pointer");
@@ -329,7 +332,7 @@ static void outputs_that_are_refused(void) {
   ASK(o[2].point[0] = 9, "outputs[2]: ");
   ASK(o[3].quantity = NULL, "outputs[3]: quantity is a null pointer");
   ASK(o[3].quantity = "color", "outputs[3]: gauge \"color\" of effect \"spring\": there is no such gauge");
-  ASK(o[4].effect = s.air, "outputs[4]: effect \"air\" has no reaction");
+  ASK(o[4].effect = s.pull, "outputs[4]: effect \"pull\" has no reaction");
   must(iso_world_free(s.world) == ISO_OK && iso_world_free(other.world) == ISO_OK, "worlds are freed");
 }
 
