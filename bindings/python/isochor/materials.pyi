@@ -18,6 +18,7 @@ class Material:
 
 _OgdenTerm = TypedDict("_OgdenTerm", {"mu": float, "alpha": float}, total=False)
 _PronyTerm = TypedDict("_PronyTerm", {"ratio": float, "time": float}, total=False)
+_Mullins = TypedDict("_Mullins", {"r": float, "m": float, "beta": float}, total=False)
 _Fibers = TypedDict("_Fibers", {"direction": ArrayLike, "directions": ArrayLike, "field": str, "law": Literal["exponential", "toe"], "k1": float, "k2": float, "dispersion": float, "exponent": float, "isochoric": bool, "straight_modulus": float, "straight_stretch": float}, total=False)
 _CompressionPenalty = TypedDict("_CompressionPenalty", {"modulus": float, "beta": float}, total=False)
 _CellField = TypedDict("_CellField", {"values": ArrayLike, "file": str}, total=False)
@@ -37,6 +38,7 @@ def neo_hookean(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -66,6 +68,8 @@ def neo_hookean(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -90,6 +94,7 @@ def neo_hookean_ogden(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -119,6 +124,8 @@ def neo_hookean_ogden(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -143,6 +150,7 @@ def stable_neo_hookean(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -172,6 +180,8 @@ def stable_neo_hookean(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -196,6 +206,7 @@ def stable_neo_hookean_barrier(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -225,6 +236,8 @@ def stable_neo_hookean_barrier(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -249,6 +262,7 @@ def isochoric_neo_hookean(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -278,6 +292,8 @@ def isochoric_neo_hookean(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -303,6 +319,7 @@ def isochoric_extended(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -334,6 +351,8 @@ def isochoric_extended(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -358,6 +377,7 @@ def corotated(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -387,6 +407,8 @@ def corotated(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -411,6 +433,7 @@ def fixed_corotated(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -440,6 +463,8 @@ def fixed_corotated(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -464,6 +489,7 @@ def stvk(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -493,6 +519,8 @@ def stvk(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -518,6 +546,7 @@ def stvk_resistant(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -549,6 +578,8 @@ def stvk_resistant(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -573,6 +604,7 @@ def linear(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -602,6 +634,8 @@ def linear(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -628,6 +662,7 @@ def mooney_rivlin(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -661,6 +696,8 @@ def mooney_rivlin(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -685,6 +722,7 @@ def fung(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -714,6 +752,8 @@ def fung(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -741,6 +781,7 @@ def arruda_boyce(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -776,6 +817,8 @@ def arruda_boyce(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -798,6 +841,7 @@ def ogden(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -823,6 +867,8 @@ def ogden(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -845,6 +891,7 @@ def yeoh(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -870,6 +917,8 @@ def yeoh(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -893,6 +942,7 @@ def gent(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -920,6 +970,8 @@ def gent(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -943,6 +995,7 @@ def veronda_westmann(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -970,6 +1023,8 @@ def veronda_westmann(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -993,6 +1048,7 @@ def holmes_mow(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1020,6 +1076,8 @@ def holmes_mow(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -1046,6 +1104,7 @@ def isochoric_mooney_rivlin(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1079,6 +1138,8 @@ def isochoric_mooney_rivlin(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -1103,6 +1164,7 @@ def isochoric_fung(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1132,6 +1194,8 @@ def isochoric_fung(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -1159,6 +1223,7 @@ def isochoric_arruda_boyce(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1194,6 +1259,8 @@ def isochoric_arruda_boyce(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -1216,6 +1283,7 @@ def isochoric_ogden(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1241,6 +1309,8 @@ def isochoric_ogden(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -1263,6 +1333,7 @@ def isochoric_yeoh(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1288,6 +1359,8 @@ def isochoric_yeoh(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -1311,6 +1384,7 @@ def isochoric_gent(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1338,6 +1412,8 @@ def isochoric_gent(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -1361,6 +1437,7 @@ def isochoric_veronda_westmann(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1388,6 +1465,8 @@ def isochoric_veronda_westmann(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -1411,6 +1490,7 @@ def isochoric_holmes_mow(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1438,6 +1518,8 @@ def isochoric_holmes_mow(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
@@ -1458,6 +1540,7 @@ def named(
     region: Union[str, None] = ...,
     prony: Union[Sequence["_PronyTerm"], None] = ...,
     static_time: Literal["long_term", "seconds"] = ...,
+    mullins: Union["_Mullins", None] = ...,
     fibers: Union[Sequence["_Fibers"], None] = ...,
     compression_penalty: Union["_CompressionPenalty", None] = ...,
     stiffness_field: Union[Union["_CellField", ArrayLike], None] = ...,
@@ -1479,6 +1562,8 @@ def named(
         terms of a Prony series: an isochoric law then relaxes
     static_time:
         what the time of a statics is to prony: everything has relaxed, or seconds: "long_term", "seconds" (default: "long_term")
+    mullins:
+        softening of an isochoric law by what it has borne
     fibers:
         families of fibers
     compression_penalty:
