@@ -230,7 +230,7 @@ def test_a_thick_tube_has_the_sensitivities_of_the_closed_form():
     pressure, du, dV = 0.275711536803412, (0.733494721821, -0.20223295699), (9.84415175655, -2.71414620933)
     world = iso.World(**TIGHT)
     mesh = iso.read_mesh(MESHES / "thick_tube_1_hex.msh")
-    rubber = iso.neo_hookean(mu=1, poisson=0.5)
+    rubber = iso.neo_hookean(young=3, poisson=0.5)  # mu = 1
     tube = world.add_body(mesh, rubber, element="hex8")
     world.add(iso.volume(tube, space="element"))
     for surface, direction in (("symmetry_x", (1, 0, 0)), ("symmetry_y", (0, 1, 0)), ("faces_z", (0, 0, 1))):
@@ -239,13 +239,14 @@ def test_a_thick_tube_has_the_sensitivities_of_the_closed_form():
     world.advance(1)
     outer = int(np.argmin(((tube.rest_positions - (2, 0, 0)) ** 2).sum(axis=1)))
     told = world.gradients(
-        [Output.node(tube, outer, (1, 0, 0)), Output.gauge(air, "volume")], [air, Parameter.material(tube, "mu")]
+        [Output.node(tube, outer, (1, 0, 0)), Output.gauge(air, "volume")], [air, Parameter.material(tube, "young")]
     )
+    jacobian = told.jacobian * (1, 3)  # by mu
     quarter = tube.rest_positions[:, 2].max() / 4
-    assert told.jacobian[0] == pytest.approx(du, rel=0.05)
-    assert told.jacobian[1] / quarter == pytest.approx(dV, rel=0.05)
+    assert jacobian[0] == pytest.approx(du, rel=0.05)
+    assert jacobian[1] / quarter == pytest.approx(dV, rel=0.05)
     # Only the pressure over the modulus counts.
-    assert (pressure * told.jacobian[:, 0] + told.jacobian[:, 1]) / told.jacobian[:, 1] == pytest.approx(0, abs=1e-8)
+    assert (pressure * jacobian[:, 0] + jacobian[:, 1]) / jacobian[:, 1] == pytest.approx(0, abs=1e-8)
 
 
 def block(gap=0.001, down=0.05, friction=0.0, scheme="statics"):
@@ -280,7 +281,7 @@ def test_regions_and_keys_that_were_not_said_are_found():
     world.add(iso.dirichlet(body, surfaces="x0"))
     world.advance(1)
     out = [Output.node(body, int(np.argmax(body.rest_positions[:, 0])), (0, 0, 1))]
-    by = lambda key, region: world.gradients(out, [Parameter.material(body, key, region=region)]).jacobian[0, 0]
+    by = lambda key, region: world.gradients(out, [Parameter.material(body, key, region=region, step=1e-4)]).jacobian[0, 0]
     assert by("young", "a") > 0 and by("c2", "b") > 0 and by("poisson", "a") != 0
     with pytest.raises(iso.Error) as error:
         Parameter.material(body, "young")

@@ -155,10 +155,9 @@ class Parameter:
     ) -> Parameter:
         """A constant of an effect: a key of it, or a function that makes the effect of a ``value``, as of ``material``."""
         who = "Parameter.constant_of"
-        world, kind = _effect(effect, who).world, effect.kind
-        keys = world._with_body(effect.description)
+        kind, keys = _effect(effect, who).kind, effect.world._with_body(effect.description)
         if callable(what):
-            text = lambda made: _effect_text(world, effect, made)
+            text = lambda made: _effect_text(effect, made)
             return Parameter("constant_of", effect, kind, _value(value, who), _maker(what, text), step=step)
         known = {key.python_name: key for key, inner in _effects.arguments(kind) if not inner}
         path, keys = _key(what, keys, known, kind, who)
@@ -330,10 +329,10 @@ def _material_text(made: Any) -> str:
     return _keys.text(made.keys)
 
 
-def _effect_text(world: _world.World, live: _world.LiveEffect, made: Any) -> str:
+def _effect_text(live: _world.LiveEffect, made: Any) -> str:
     if not isinstance(made, _effects.Effect):
         raise Error(f"the function made a value of type {type(made).__name__}; it is to return an effect")
     if made.kind != live.kind:
         raise Error(f'the function made a {made.kind} in the place of the {live.kind} "{live.name}"; it is to make one')
-    keys = world._with_body(made)
-    return _keys.text({**keys, "name": live.name})
+    # Its world is in a call, and is not asked.
+    return _keys.text({**_world._with_body(made), "name": live.name})

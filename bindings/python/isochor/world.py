@@ -381,19 +381,11 @@ class World:
 
     def _with_body(self, effect: Effect) -> dict[str, Any]:
         """The keys as a scene file has them, with the body by its name."""
-        keys = dict(effect.keys)
-        body = effect.body
-        if isinstance(body, Body):
-            why = self._core.why_not(body._id)
+        if isinstance(effect.body, Body):
+            why = self._core.why_not(effect.body._id)
             if why is not None:
-                raise Error(f'{effect.kind} "{effect.name}": body "{body.name}": {why}')
-            body = body.name
-        if body is not None:
-            place = keys
-            if any(key.type == "selection" for key in _keys.objects()[effect.kind].keys):
-                place = keys["where"] = dict(keys.get("where", {}))
-            place["body"] = _keys.plain(body, f"{effect.kind}: body")
-        return keys
+                raise Error(f'{effect.kind} "{effect.name}": body "{effect.body.name}": {why}')
+        return _with_body(effect)
 
     def remove(self, thing: Body | LiveEffect) -> None:
         """Takes an effect, or a body that no effect names, out of the world.
@@ -798,6 +790,17 @@ def _effects_of(said: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
     for kind, name in _keys.effect_types().items():
         for keys in said.get(name, []):
             yield kind, keys
+
+
+def _with_body(effect: Effect) -> dict[str, Any]:
+    """The keys as a scene file has them, whatever world they are for."""
+    keys = dict(effect.keys)
+    if effect.body is not None:
+        place = keys
+        if any(key.type == "selection" for key in _keys.objects()[effect.kind].keys):
+            place = keys["where"] = dict(keys.get("where", {}))
+        place["body"] = _keys.plain(effect.body, f"{effect.kind}: body")
+    return keys
 
 
 def _described(kind: str, keys: dict[str, Any]) -> Effect:
