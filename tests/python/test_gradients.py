@@ -75,6 +75,9 @@ class Hollow:
         self.world.add_force_at(self.body, pushed, k["push"] * np.array(PUSH, float))
         self.world.advance(1)
 
+    def rope_of(self, stiffness):
+        return self.rope.description.with_keys(stiffness=stiffness)
+
 
 def outputs(made):
     """Every kind of output, by the name of the function that makes it."""
@@ -102,14 +105,14 @@ def parameters(made):
             ("young", Parameter.material(made.body, "young")),
             (
                 "poisson",
-                Parameter.material(made.body, lambda v: iso.neo_hookean(young=made.knobs["young"], poisson=v), value=0.45),
+                Parameter.material(made.body, lambda v: iso.neo_hookean(young=KNOBS["young"], poisson=v), value=0.45),
             ),
         ],
         "stiffness": [("stiffness", Parameter.stiffness(made.body))],
         "cell_stiffness": [],  # not a number: in a test of its own
         "constant_of": [
             ("spring", Parameter.constant_of(made.rope, "stiffness")),
-            ("spring", Parameter.constant_of(made.rope, lambda v: made.rope.description.with_keys(stiffness=v), value=900)),
+            ("spring", Parameter.constant_of(made.rope, made.rope_of, value=900)),
         ],
         "shape": [("shape", Parameter.shape(made.body, MOTION))],
     }
@@ -174,7 +177,8 @@ def test_other_gauges_have_gradients_too(hollow):
 def enumerated(struct, header):
     """Names of the functions that make a kind, in C++."""
     body = re.search(rf"struct ISOCHOR_API {struct} \{{(.*?)^\}};", header, re.S | re.M).group(1)
-    return set(re.findall(rf"static {struct} (\w+)\(", body)), re.search(r"enum class Kind[^{]*\{([^}]*)\}", body).group(1)
+    kinds = re.search(r"enum class Kind[^{]*\{([^}]*)\}", body).group(1)
+    return set(re.findall(rf"static {struct} (\w+)\(", body)), kinds
 
 
 @pytest.mark.parametrize("struct, ours", [("Output", Output), ("Parameter", Parameter)])
@@ -281,7 +285,10 @@ def test_regions_and_keys_that_were_not_said_are_found():
     world.add(iso.dirichlet(body, surfaces="x0"))
     world.advance(1)
     out = [Output.node(body, int(np.argmax(body.rest_positions[:, 0])), (0, 0, 1))]
-    by = lambda key, region: world.gradients(out, [Parameter.material(body, key, region=region, step=1e-4)]).jacobian[0, 0]
+
+    def by(key, region):
+        return world.gradients(out, [Parameter.material(body, key, region=region, step=1e-4)]).jacobian[0, 0]
+
     assert by("young", "a") > 0 and by("c2", "b") > 0 and by("poisson", "a") != 0
     with pytest.raises(iso.Error) as error:
         Parameter.material(body, "young")
@@ -320,9 +327,15 @@ def strange(made):
         "no nodes": (ask([Output.positions(body, [], np.zeros((0, 3)))], []), "0 nodes"),
         "weights": (ask([Output.positions(body, [0], [(0, 1)])], []), "weights: an array of shape (1, 2)"),
         "nan": (ask([tip, Output.distance(body, [0], [(0, 0, np.nan)])], []), "outputs[1]: targets: row 0 holds nan"),
-        "nan of a force": (ask([Output.reaction(made.clamp, (0, np.nan, 0))], []), "outputs[0]: force: entry 1 holds nan"),
+        "nan of a force": (
+            ask([Output.reaction(made.clamp, (0, np.nan, 0))], []),
+            "outputs[0]: force: entry 1 holds nan",
+        ),
         "point": (ask([Output.material_point(body, (5, 5, 5), (0, 0, 1))], []), "outputs[0]: .*(5, 5, 5)"),
-        "gauge": (ask([Output.gauge(air, "color")], []), 'outputs[0]: gauge "color" of effect "air": there is no such gauge'),
+        "gauge": (
+            ask([Output.gauge(air, "color")], []),
+            'outputs[0]: gauge "color" of effect "air": there is no such gauge',
+        ),
         "reaction": (ask([Output.reaction(air, (1, 0, 0))], []), 'outputs[0]: effect "air" has no reaction'),
         "no amount": (ask([tip], [made.rows]), 'parameters[0]: effect "volume" has no amount'),
         "region": (ask([tip], [Parameter.density(body, "steel")]), "parameters[0]: .*steel"),
@@ -331,17 +344,32 @@ def strange(made):
         "motion of a shape": (ask([tip], [Parameter.shape(body, MOTION[0])]), "motion: an array of shape (3,)"),
         "no motion": (ask([tip], [Parameter.shape(body, 0 * MOTION)]), "zero"),
         "key": (lambda: Parameter.material(body, "yuong"), 'neo_hookean: unknown key "yuong", did you mean "young"?'),
-        "key without a number": (lambda: Parameter.material(body, "bulk_choice"), '"bulk_choice" is a word; name one that has a number'),
-        "key that is not given": (ask([tip], [Parameter.material(body, "mu")]), 'parameters[0]: key "mu" is not among those that are given'),
+        "key without a number": (
+            lambda: Parameter.material(body, "bulk_choice"),
+            '"bulk_choice" is a word; name one that has a number',
+        ),
+        "key that is not given": (
+            ask([tip], [Parameter.material(body, "mu")]),
+            'parameters[0]: key "mu" is not among those that are given',
+        ),
         "density": (ask([tip], [Parameter.material(body, "density")]), "parameters[0]: .*nothing depends on it"),
         "nothing depends on it": (
             ask([tip], [Parameter.material(body, lambda v: young(1e4), value=1e4)]),
             "parameters[0]: .*nothing depends on it: at 10000 and at ",
         ),
         "key of an effect": (lambda: Parameter.constant_of(air, "presure"), 'cavity: unknown key "presure"'),
-        "no value": (lambda: Parameter.material(body, young), "value is None; give the number that the scene was made with"),
-        "another value": (ask([tip], [Parameter.material(body, young, value=2e4)]), "parameters[0]: .*not what the scene has"),
-        "not a material": (ask([tip], [Parameter.material(body, lambda v: v, value=1e4)]), "parameters[0]: .*a value of type float; it is to return a material"),
+        "no value": (
+            lambda: Parameter.material(body, young),
+            "value is None; give the number that the scene was made with",
+        ),
+        "another value": (
+            ask([tip], [Parameter.material(body, young, value=2e4)]),
+            "parameters[0]: .*not what the scene has",
+        ),
+        "not a material": (
+            ask([tip], [Parameter.material(body, lambda v: v, value=1e4)]),
+            "parameters[0]: .*a value of type float; it is to return a material",
+        ),
         "not a function": (lambda: Parameter.material(body, 5), "a value of type int; give a key or a function"),
         "refused by the law": (
             ask([tip], [Parameter.material(body, lambda v: iso.neo_hookean(young=1e4, poisson=0.45 + v), value=1)]),

@@ -50,7 +50,8 @@ def test_gradients_functions_and_exceptions_leave_nothing():
         large = kept.copy()
         out = [iso.Output.node(body, 7, (0, 0, 1)), iso.Output.positions(body, None, (0, 0, 1))]
         law = lambda young: iso.neo_hookean(young=young + large[0], poisson=0.3)
-        held = world.gradients(out, [clamp, iso.Parameter.material(body, law, value=1e5), iso.Parameter.cell_stiffness(body)])
+        young = iso.Parameter.material(body, law, value=1e5)
+        held = world.gradients(out, [clamp, young, iso.Parameter.cell_stiffness(body)])
         try:
             world.gradients(out, [iso.Parameter.material(body, lambda young: large[2000], value=1e5)])
         except IndexError:

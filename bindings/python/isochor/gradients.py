@@ -153,7 +153,7 @@ class Parameter:
         value: float | None = None,
         step: float = 0.0,
     ) -> Parameter:
-        """A constant of an effect: a key of it, or a function that makes the effect of a ``value``, as of ``material``."""
+        """A constant of an effect: a key of it, or a function that makes it of a ``value``, as of ``material``."""
         who = "Parameter.constant_of"
         kind, keys = _effect(effect, who).kind, effect.world._with_body(effect.description)
         if callable(what):
