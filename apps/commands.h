@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenes/explain.h"
+#include "scenes/run/error_search.h"
 #include "scenes/run/run.h"
 
 namespace isochor::app {
@@ -34,7 +35,8 @@ struct RunArguments {
   int threads = 0;
   std::optional<double> budget;
   bool quiet = false, json = false, explain = false, accuracy = false;
-  bool resume = false;
+  bool resume = false, price = false;
+  std::string error;                 // "1%" or "0.01": search for it; empty: run as the scene says
   std::optional<double> checkpoint;  // [s], in place of outputs.checkpoint_seconds
 };
 
@@ -44,6 +46,18 @@ struct RunArguments {
 
 // Tables of `run --explain`, after the run.
 void print_explanation(const Explanation& explanation, const RunResult& result);
+
+// Metrics, the state at the end and where the outputs are.
+void print_summary(const RunResult& result, const std::string& folder);
+void print_explanation_of(const SceneDef& scene, const RunResult& result);
+
+// Of a run, by how it ended.
+int exit_code(RunStatus status);
+
+// run --error and run --price.
+void print_trial(const Trial& trial);
+int run_to_error(const RunArguments& arguments, const SceneDef& scene);
+int price(const RunArguments& arguments, const SceneDef& scene);
 
 struct StudyArguments {
   std::string study;

@@ -13,8 +13,10 @@ namespace {
 using namespace isochor;
 
 constexpr const char* kRunFooter =
-    "Exit codes: 0 success, 1 internal error, 2 bad input, 3 not converged (what was reached is kept),\n"
-    "4 stopped by the budget, 5 outputs cannot be written,\n6 out of memory, 130 interrupted.\n"
+    "Exit codes: 0 success, 1 internal error, 2 bad input, 3 not converged, or --error not reached (what "
+    "was\n"
+    "reached is kept), 4 stopped by the budget, 5 outputs cannot be written,\n6 out of memory, 130 "
+    "interrupted.\n"
     "Example: isochor run finger --set cavities.chamber.amount=20000 --set bodies[0].element=tet10";
 
 void add_run(CLI::App& top, app::RunArguments& a) {
@@ -40,6 +42,12 @@ void add_run(CLI::App& top, app::RunArguments& a) {
   c->add_flag("--explain", a.explain, "Say which effects are on, why, and their share of time and memory");
   c->add_flag("--accuracy", a.accuracy,
               "Run once more with something better and say what every metric and probe is worth");
+  c->add_option("--error", a.error,
+                "Find element and mesh so that every metric and probe is within this of the answer")
+      ->type_name("PERCENT")
+      ->excludes("--accuracy", "--resume");
+  c->add_flag("--price", a.price, "Say what 10, 3, 1 and 0.3 % would take: element, mesh, time, memory")
+      ->excludes("--accuracy", "--resume", "--error");
   c->footer(kRunFooter);
 }
 

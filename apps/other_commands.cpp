@@ -9,6 +9,7 @@
 #include "scenes/library.h"
 #include "scenes/run/run.h"
 #include "scenes/scene_file.h"
+#include "scenes/thin_walls.h"
 
 namespace isochor::app {
 
@@ -161,7 +162,9 @@ int check(const std::vector<std::string>& meshes, double scale, bool json) {
         std::fprintf(stderr, "isochor: %s\n", mesh.error().c_str());
       continue;
     }
-    const MeshReport report = check_mesh(mesh.value());
+    MeshReport report = check_mesh(mesh.value());
+    if (const std::string walls = report.usable() ? thin_walls(mesh.value()) : ""; !walls.empty())
+      report.findings.push_back({Severity::note, "thin-walls", walls, 1, {}});
     usable = usable && report.usable();
     if (json)
       all.push_back(report_json(path, report));

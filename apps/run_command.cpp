@@ -91,15 +91,6 @@ void print_state(const RunResult& r) {
   std::printf("\n%s", table.text("  ").c_str());
 }
 
-void print_summary(const RunResult& r, const std::string& folder) {
-  print_metrics(r);
-  print_state(r);
-  std::printf("\n%s: %s, %d Newton iterations, %d factorizations, %.2f s\n", r.scene.c_str(),
-              to_string(r.status), r.work.iterations, r.work.factorizations, r.wall_s);
-  std::printf("outputs in %s/: index.html, %s.pvd, steps.csv, summary.json\n", folder.c_str(),
-              r.scene.c_str());
-}
-
 void print_accuracy(const Accuracy& a) {
   if (!a.reason.empty()) {
     std::fprintf(stderr, "isochor: --accuracy: %s\n", a.reason.c_str());
@@ -117,6 +108,8 @@ void print_accuracy(const Accuracy& a) {
       "\n%s  compared with %s; %.2f s. Without the errors of time steps and of the shape of the mesh.\n",
       table.text("  ").c_str(), a.how.c_str(), a.seconds);
 }
+
+}  // namespace
 
 int exit_code(RunStatus status) {
   switch (status) {
@@ -140,7 +133,22 @@ int exit_code(RunStatus status) {
   return internal;
 }
 
-}  // namespace
+void print_summary(const RunResult& r, const std::string& folder) {
+  print_metrics(r);
+  print_state(r);
+  std::printf("\n%s: %s, %d Newton iterations, %d factorizations, %.2f s\n", r.scene.c_str(),
+              to_string(r.status), r.work.iterations, r.work.factorizations, r.wall_s);
+  std::printf("outputs in %s/: index.html, %s.pvd, steps.csv, summary.json\n", folder.c_str(),
+              r.scene.c_str());
+}
+
+void print_explanation_of(const SceneDef& scene, const RunResult& result) {
+  const auto explanation = explain(scene);
+  if (explanation)
+    print_explanation(explanation.value(), result);
+  else
+    std::fprintf(stderr, "isochor: --explain: %s\n", explanation.error().c_str());
+}
 
 Result<SceneDef> find_scene_named(const std::string& name, const Overrides& overrides) {
   if (const LibraryScene* scene = find_scene(name)) return override_scene(scene->make({}), overrides);
@@ -160,6 +168,8 @@ int run(const RunArguments& a) {
   }
   if (a.checkpoint) scene.value().outputs.checkpoint_seconds = *a.checkpoint;
   stop_on_signals();
+  if (a.price) return price(a, scene.value());
+  if (!a.error.empty()) return run_to_error(a, scene.value());
   const bool tables = !a.quiet && !a.json;
   RunOptions options;
   options.folder = a.folder.empty() ? "out/" + scene.value().name : a.folder;
@@ -200,13 +210,7 @@ int run(const RunArguments& a) {
   }
   if (tables) print_summary(result, options.folder);
   if (accuracy && (tables || !accuracy->reason.empty())) print_accuracy(*accuracy);
-  if (a.explain) {
-    const auto explanation = explain(scene.value());
-    if (explanation)
-      print_explanation(explanation.value(), result);
-    else
-      std::fprintf(stderr, "isochor: --explain: %s\n", explanation.error().c_str());
-  }
+  if (a.explain) print_explanation_of(scene.value(), result);
   if (!result.reason.empty())
     std::fprintf(stderr, "isochor: %s: %s\n", to_string(result.status), result.reason.c_str());
   return exit_code(result.status);

@@ -30,4 +30,7 @@ Result<MadeBody> make_body(const SceneBody& body, const std::string& folder, con
 // The numbers of a field, in place or from a file: one a cell of the mesh.
 Result<std::vector<double>> read_field(const CellField& field, const std::string& folder);
 
+// The material with its numbers cell by cell handed down to the cells of a mesh refined so often.
+Result<MaterialDef> refined_numbers(const MaterialDef& def, const std::string& folder, int levels);
+
 }  // namespace isochor

@@ -50,6 +50,22 @@ Result<void> name_places(const SceneBody& body, const std::string& folder, Mesh&
   return add_all("node_sets", body.node_sets, add_node_set);
 }
 
+// Every cell into eight, where the body asks for it. What is chosen by place was chosen before, so that it
+// stays the same surface at every level.
+Result<void> refine(const SceneBody& body, Mesh& mesh) {
+  if (body.refine == 0) return {};
+  if (std::holds_alternative<LatticeMesh>(body.mesh)) {
+    return Error{
+        "refine = " + std::to_string(body.refine) +
+        ", but the mesh is a lattice, whose cubes fit its surface better when they are made smaller; "
+        "halve mesh.lattice.spacing instead"};
+  }
+  auto finer = refine_mesh(mesh, body.refine);
+  if (!finer) return Error{"refine: " + finer.error(), finer.failure().kind};
+  mesh = std::move(finer).value();
+  return {};
+}
+
 }  // namespace
 
 Result<MadeBody> make_body(const SceneBody& body, const std::string& folder, const std::string& where,
@@ -64,8 +80,10 @@ Result<MadeBody> make_body(const SceneBody& body, const std::string& folder, con
   if (!mesh) return Error{where + ".mesh: " + mesh.error()};
   def.mesh = std::move(mesh).value();
   if (auto r = name_places(body, folder, def.mesh); !r) return Error{where + "." + r.error()};
+  if (auto r = refine(body, def.mesh); !r) return Error{where + "." + r.error(), r.failure().kind};
   for (std::size_t m = 0; m < body.materials.size(); ++m) {
-    auto material = make_material(body.materials[m], folder, &def.mesh);
+    auto refined = refined_numbers(body.materials[m], folder, body.refine);
+    auto material = refined ? make_material(refined.value(), folder, &def.mesh) : refined.failure();
     if (!material) return Error{where + "." + place("materials", m) + ": " + material.error()};
     def.materials.push_back(
         {body.materials[m].region, std::move(material).value(), body.materials[m].density});

@@ -124,6 +124,8 @@ struct SceneBody {
   std::variant<MeshFile, BoxMeshDef, LatticeMesh> mesh;
   // Named by where they are, beside those of the mesh file; in the placed mesh, after scale, turn and offset.
   std::vector<MeshSelection> surfaces, node_sets;
+  // Then every cell is cut into eight, so often. Numbers cell by cell are those of the mesh before that.
+  int refine = 0;
   Element element = Element::tet4_edge_smoothed;
   std::vector<MaterialDef> materials;
   std::optional<double> guard_stiffness;  // see BodyDef

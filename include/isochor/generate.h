@@ -20,4 +20,11 @@ ISOCHOR_API Result<Mesh> box_mesh(const BoxMeshDef& def);
 // A Tet10 mesh on the same corners, with straight edges. Meshes that are not Tet4 are returned as they are.
 ISOCHOR_API Mesh to_tet10(const Mesh& mesh);
 
+// Every cell cut into eight of its own kind, `levels` times; the children of cell c are 8 c to 8 c + 7.
+// Curved edges are followed. Regions, surfaces, node sets and fields are kept: a new node belongs to a set
+// when all nodes that it lies between do, and lies on the surface of the body where the whole set does;
+// fields at nodes are interpolated, those in cells and regions handed down. Tets are cut along their shortest
+// inner diagonal.
+ISOCHOR_API Result<Mesh> refine_mesh(const Mesh& mesh, int levels = 1);
+
 }  // namespace isochor

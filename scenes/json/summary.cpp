@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "scenes/run/accuracy.h"
+#include "scenes/run/error_search.h"
 #include "scenes/run/run.h"
 
 namespace isochor {
@@ -116,8 +117,9 @@ std::string failure_json(const RunResult& r) {
   return dump({{"status", to_string(r.status)}, {"reason", r.reason}, {"scene", r.scene}});
 }
 
-std::string summary_json(const RunResult& r, const Accuracy& accuracy) {
-  Json j = summary(r);
+namespace {
+
+void add_accuracy(Json& j, const Accuracy& accuracy) {
   Json& a = j["accuracy"];
   a["compared_with"] = accuracy.how;
   a["upper_limit"] = accuracy.comparison == Comparison::worse_element;
@@ -133,6 +135,40 @@ std::string summary_json(const RunResult& r, const Accuracy& accuracy) {
     if (e.relative) entry["relative"] = *e.relative;
     a["indicators"].push_back(entry);
   }
+}
+
+Json trial(const Trial& t) {
+  Json j{{"setting", describe(t.setting)},
+         {"status", to_string(t.status)},
+         {"elements", t.elements},
+         {"unknowns", t.unknowns},
+         {"wall_s", t.seconds},
+         {"predicted_s", t.predicted_seconds}};
+  if (!t.reason.empty()) j["reason"] = t.reason;
+  if (t.indicator && std::isfinite(*t.indicator)) j["indicator"] = *t.indicator;
+  if (t.indicator) j["held_by"] = t.held_by;
+  return j;
+}
+
+}  // namespace
+
+std::string summary_json(const RunResult& r, const Accuracy& accuracy) {
+  Json j = summary(r);
+  add_accuracy(j, accuracy);
+  return dump(j);
+}
+
+std::string summary_json(const ErrorSearch& s) {
+  Json j = summary(s.result);
+  add_accuracy(j, s.accuracy);
+  Json& a = j["accuracy"];
+  a["error_asked"] = s.asked;
+  a["search"] = to_string(s.end);
+  a["sentence"] = s.sentence;
+  a["overrides"] = s.overrides;
+  a["search_wall_s"] = s.seconds;
+  a["trials"] = Json::array();
+  for (const Trial& t : s.trials) a["trials"].push_back(trial(t));
   return dump(j);
 }
 

@@ -115,6 +115,11 @@ void describe_at_rest(Visitor& io, SceneBody& b) {
            "already"},
           b.surfaces);
   io.list({"node_sets", "", "nodes by where they are, inside the body as well"}, b.node_sets);
+  io.integer(
+      Key("refine", "", "cuts every cell into eight, so many times; see [refined meshes](#refined-meshes)")
+          .least(0)
+          .most(8),
+      b.refine, d.refine);
   io.word({"element", "", "see [elements](elements.md)"}, b.element, d.element);
   io.list(Key("materials", "", "one, or one a region").must(), b.materials);
   io.optional_number(

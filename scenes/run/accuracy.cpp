@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/base.h"
+#include "isochor/mesh_io.h"
+#include "scenes/body_parts.h"
+#include "scenes/check_values.h"
+
 namespace isochor {
 
 namespace {
@@ -25,29 +30,46 @@ bool has_error(Quantity q) {
   }
 }
 
-bool boxes_only(const SceneDef& scene) {
-  return std::all_of(scene.bodies.begin(), scene.bodies.end(),
-                     [](const SceneBody& b) { return std::holds_alternative<BoxMeshDef>(b.mesh); });
-}
-
 bool all_of_element(const SceneDef& scene, Element e) {
   return std::all_of(scene.bodies.begin(), scene.bodies.end(),
                      [&](const SceneBody& b) { return b.element == e; });
 }
 
-AccuracyEntry entry(std::string name, std::string unit, double value, double other, double difference,
-                    double size, Comparison comparison) {
-  AccuracyEntry e{std::move(name), std::move(unit), value, other, difference, {}};
-  if (comparison == Comparison::finer_boxes) e.indicator *= kHalvedCells;
-  if (size > 0) e.relative = e.indicator / size;
-  return e;
-}
-
-double length(const Vec3& v) {
-  return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+// Meshes of Tet4 from files, which another element can be laid on; boxes are cut finer at once.
+bool on_linear_files(const SceneDef& scene) {
+  return std::all_of(scene.bodies.begin(), scene.bodies.end(), [&](const SceneBody& b) {
+    const auto* file = std::get_if<MeshFile>(&b.mesh);
+    if (!file) return false;
+    const auto mesh = read_mesh(path_in(scene.folder, file->path));
+    return mesh && mesh.value().cell_type == CellType::tet4;
+  });
 }
 
 }  // namespace
+
+double Answer::shown() const {
+  return vector ? norm(value) : value.x;
+}
+
+bool has_answers(const SceneDef& scene) {
+  return !scene.probes.empty() || std::any_of(scene.metrics.begin(), scene.metrics.end(),
+                                              [](const MetricDef& m) { return has_error(m.quantity); });
+}
+
+std::vector<Answer> answers_of(const RunResult& result) {
+  std::vector<Answer> out;
+  for (const MetricValue& m : result.metrics) {
+    if (!has_error(m.def.quantity) || !m.reached) continue;
+    // A change of volume is relative to the volume as it is.
+    const double size = m.def.quantity == Quantity::volume_change ? std::abs(m.def.scale) : std::abs(m.value);
+    out.push_back({m.def.name, m.def.unit, {m.value, 0, 0}, size, false});
+  }
+  for (std::size_t p = 0; !result.records.empty() && p < result.probes.size(); ++p) {
+    const Vec3& u = result.records.back().probes[p];
+    out.push_back({"probe " + result.probes[p], "m", u, norm(u), true});
+  }
+  return out;
+}
 
 Result<ComparedScene> compared_scene(const SceneDef& scene) {
   ComparedScene out{scene, Comparison::better_element, ""};
@@ -67,24 +89,24 @@ Result<ComparedScene> compared_scene(const SceneDef& scene) {
     out.how = "the same mesh with the next better element (Tet4: edge-smoothed, edge-smoothed Tet4: Tet10)";
     return out;
   }
-  if (boxes_only(scene)) {
-    for (SceneBody& b : out.scene.bodies) {
-      for (int& n : std::get<BoxMeshDef>(b.mesh).divisions) n *= 2;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    if (std::holds_alternative<LatticeMesh>(scene.bodies[b].mesh)) {
+      return Error{
+          "no indicator: the cubes of " + place("bodies", b) +
+          " are cut anew from its surface at every spacing; run the scene with half of mesh.lattice.spacing "
+          "and compare"};
     }
-    out.comparison = Comparison::finer_boxes;
-    out.how = "the same boxes cut in two in every direction, four thirds of the difference";
-    return out;
   }
-  if (all_of_element(scene, Element::tet10)) {
+  if (all_of_element(scene, Element::tet10) && on_linear_files(scene)) {
     for (SceneBody& b : out.scene.bodies) b.element = Element::tet4_edge_smoothed;
     out.comparison = Comparison::worse_element;
     out.how = "the same mesh with edge-smoothed Tet4, whose error this is: an upper limit for Tet10";
     return out;
   }
-  return Error{
-      "no indicator: the bodies have the best element there is for their cells, on meshes that are not "
-      "boxes; "
-      "run the scene on a finer mesh and compare"};
+  for (SceneBody& b : out.scene.bodies) ++b.refine;
+  out.comparison = Comparison::finer_mesh;
+  out.how = "the same mesh with every cell cut into eight, four thirds of the difference";
+  return out;
 }
 
 Accuracy estimate_accuracy(const SceneDef& scene, const RunResult& result, const RunOptions& options) {
@@ -110,18 +132,15 @@ Accuracy estimate_accuracy(const SceneDef& scene, const RunResult& result, const
                to_string(other.status) + ": " + other.reason;
     return a;
   }
-  for (std::size_t k = 0; k < result.metrics.size() && k < other.metrics.size(); ++k) {
-    const MetricValue &m = result.metrics[k], &o = other.metrics[k];
-    if (!has_error(m.def.quantity) || !m.reached || !o.reached) continue;
-    a.entries.push_back(entry(m.def.name, m.def.unit, m.value, o.value, std::abs(m.value - o.value),
-                              std::abs(o.value), a.comparison));
-  }
-  if (result.records.empty() || other.records.empty()) return a;
-  const StepRecord &end = result.records.back(), &other_end = other.records.back();
-  for (std::size_t p = 0; p < end.probes.size() && p < other_end.probes.size(); ++p) {
-    const Vec3 &u = end.probes[p], &v = other_end.probes[p];
-    a.entries.push_back(entry("probe " + result.probes[p], "m", length(u), length(v),
-                              length({u.x - v.x, u.y - v.y, u.z - v.z}), length(v), a.comparison));
+  const std::vector<Answer> answers = answers_of(result), others = answers_of(other);
+  for (const Answer& mine : answers) {
+    const auto found =
+        std::find_if(others.begin(), others.end(), [&](const Answer& o) { return o.name == mine.name; });
+    if (found == others.end()) continue;
+    AccuracyEntry e{mine.name, mine.unit, mine.shown(), found->shown(), norm(mine.value - found->value), {}};
+    if (a.comparison == Comparison::finer_mesh) e.indicator *= kHalvedCells;
+    if (found->size > 0) e.relative = e.indicator / found->size;
+    a.entries.push_back(std::move(e));
   }
   return a;
 }

@@ -13,9 +13,23 @@ namespace isochor {
 // How a scene is compared.
 enum class Comparison : std::uint8_t {
   better_element,  // Tet4 with edge smoothing, edge-smoothed Tet4 with Tet10
-  finer_boxes,     // every box of Tet10 or Hex8 cut into eight
-  worse_element,   // Tet10 on a mesh file with edge-smoothed Tet4: whose error it shows, an upper limit
+  finer_mesh,      // every cell of Tet10 or Hex8 cut into eight
+  worse_element,   // Tet10 on a mesh of Tet4 with edge-smoothed Tet4: whose error it shows, an upper limit
 };
+
+// A number that a run answers with and that has an error of discretization.
+struct Answer {
+  std::string name, unit;  // of a metric, or "probe NAME"
+  Vec3 value{};            // of a metric in x
+  double size = 0;         // what its error is relative to; 0: nothing
+  bool vector = false;
+  // As tables show it: a metric with its sign, a probe by how far it went.
+  double shown() const;
+};
+// Metrics that were reached, without counts, residuals and extremes over cells, then the probes at the end.
+std::vector<Answer> answers_of(const RunResult& result);
+// Whether a scene asks for any.
+bool has_answers(const SceneDef& scene);
 
 struct AccuracyEntry {
   std::string name, unit;  // of a metric, or "probe NAME"

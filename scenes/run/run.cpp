@@ -13,6 +13,7 @@
 #include "scenes/run/outputs.h"
 #include "scenes/run/step_recorder.h"
 #include "scenes/scene_file.h"
+#include "scenes/thin_walls.h"
 
 namespace isochor {
 
@@ -91,6 +92,7 @@ void Run::describe() {
   for (const BodyId id : built_.bodies) result_.elements += world.mesh(id).cell_count();
   name_records(scene_, result_);
   for (const auto& w : world.warnings()) warn(w);
+  for (const auto& w : thin_walls(scene_, built_)) warn(w);
   for (const auto& w : recorder_.warnings()) warn(w);
 }
 

@@ -10,6 +10,7 @@
 #include "constraints/contact/shape/obstacle_shape.h"
 #include "engine/mesh/cell_shape.h"
 #include "isochor/painted.h"
+#include "scenes/body_parts.h"
 #include "scenes/material_fibers.h"
 
 namespace isochor {
@@ -432,11 +433,14 @@ CellAxes axes_of(std::span<const Index> corners, std::span<const Vec3> x) {
 }
 
 // Of each cell the directions of the fibers in it at rest.
-std::vector<std::vector<Vec3>> fibers_in_cells(const SceneBody& body, const Mesh& mesh) {
+std::vector<std::vector<Vec3>> fibers_in_cells(const SceneBody& body, const std::string& folder,
+                                               const Mesh& mesh) {
   std::vector<std::vector<Vec3>> out(static_cast<std::size_t>(mesh.cell_count()));
   for (const MaterialDef& m : body.materials) {
     if (m.fibers.empty()) continue;
-    const auto families = fibers_of(m, &mesh);
+    const auto refined = refined_numbers(m, folder, body.refine);
+    if (!refined) continue;
+    const auto families = fibers_of(refined.value(), &mesh);
     if (!families) continue;  // a world with them would not have been built
     for (std::size_t c = 0; c < out.size(); ++c) {
       const std::string region = region_of(mesh, static_cast<Index>(c));
@@ -468,7 +472,7 @@ void RunOverlays::add_fibers(const RunView& view, const PageScene& scene,
   std::size_t first = 0;
   for (std::size_t b = 0; b < triangle_cell.size(); ++b) {
     const Mesh& mesh = view.built.world.mesh(view.built.bodies[b]);
-    directions.push_back(fibers_in_cells(view.scene.bodies[b], mesh));
+    directions.push_back(fibers_in_cells(view.scene.bodies[b], view.scene.folder, mesh));
     const auto& here = directions.back();
     for (std::size_t t = 0; t < triangle_cell[b].size(); ++t) {
       const Index cell = triangle_cell[b][t];

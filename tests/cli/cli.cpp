@@ -137,6 +137,56 @@ TEST_CASE("a run says what its answers are worth") {
   CHECK(Json::parse(shell.run("run block.json --accuracy --json").out)["accuracy"]["reason"] == "");
 }
 
+TEST_CASE("a run finds what an error takes, and its end is in its code") {
+  Shell shell;
+  shell.write("block.json", kBlock);
+  const Outcome o = shell.run("run block.json --out here --error 5%");
+  INFO(o.out << o.err);
+  CHECK(o.code == 0);
+  CHECK_THAT(o.out, Contains("nothing to compare with yet") && Contains("held by \"probe tip\"") &&
+                        Contains("the same alone: isochor run block.json"));
+  const Json j = Json::parse(slurp(shell.folder() / "here/summary.json"));
+  CHECK(j["accuracy"]["error_asked"] == 0.05);
+  CHECK(fs::exists(shell.folder() / "here/block.pvd"));
+  CHECK(Json::parse(shell.run("run block.json --error 0.05 --json").out)["state_hash"] == j["state_hash"]);
+  CHECK(shell.run("run block.json --error 5% --quiet").out.empty());
+  const Outcome late = shell.run("run block.json --out late --error 0.1% --budget 0.3");
+  INFO(late.out << late.err);
+  CHECK((late.code == 4 || late.code == 0));  // a fast machine gets there
+  CHECK((late.code == 0 || late.err.find("not reached") != std::string::npos ||
+         late.err.find("no run converged") != std::string::npos));
+  for (const char* wrong : {"0%", "-1%", "nan", "1", "x"}) {
+    INFO(wrong);
+    const Outcome refused = shell.run(std::string("run block.json --error=") + wrong);
+    CHECK(refused.code == 2);
+    CHECK_THAT(refused.err, Contains("--error = ") && Contains("above 0 %"));
+  }
+  CHECK(shell.run("run block.json --error 1% --resume").code == 2);
+  const Outcome nothing = shell.run("run block.json --error 1% --set probes=[]");
+  CHECK(nothing.code == 2);
+  CHECK_THAT(nothing.err, Contains("no probe and no metric"));
+}
+
+TEST_CASE("a price comes from the machine's cost model, which is kept and remade where it is damaged") {
+  Shell shell;
+  shell.write("block.json", kBlock);
+  const fs::path cache = shell.folder() / "cache/isochor/cost_model.json";
+  const std::string with = "XDG_CACHE_HOME=" + (shell.folder() / "cache").string() + " ";
+  fs::create_directories(cache.parent_path());
+  std::ofstream(cache) << "{\"format\": 1, \"elem";
+  const Outcome first = shell.run("run block.json --price", with);
+  INFO(first.out << first.err);
+  CHECK(first.code == 0);
+  CHECK_THAT(first.err, Contains("measuring"));
+  CHECK_THAT(first.out, Contains("0.3 %") && Contains("memory"));
+  const std::string kept = slurp(cache);
+  CHECK(Json::parse(kept)["elements"].size() == 4);
+  const Outcome second = shell.run("run block.json --price --json", with);
+  CHECK_THAT(second.err, !Contains("measuring"));
+  CHECK(Json::parse(second.out).size() == 4);
+  CHECK(slurp(cache) == kept);
+}
+
 TEST_CASE("a scene file runs and writes where it is told") {
   Shell shell;
   shell.write("block.json", kBlock);
@@ -225,6 +275,8 @@ TEST_CASE("check judges meshes") {
   const Outcome good = shell.run("check " ISOCHOR_SCENES "/meshes/tube.msh");
   CHECK(good.code == 0);
   CHECK_THAT(good.out, Contains("chamber") && Contains("usable"));
+  CHECK_THAT(shell.run("check " ISOCHOR_SCENES "/meshes/finger.msh").out, Contains("thin-walls"));
+  CHECK_THAT(shell.run("check " ISOCHOR_SCENES "/meshes/cantilever_3.msh").out, !Contains("thin-walls"));
   shell.write("broken.msh", "$MeshFormat\n4.1 0 8\n");
   CHECK(shell.run("check broken.msh").code == 2);
   const Outcome both = shell.run("check broken.msh " ISOCHOR_SCENES "/meshes/tube.msh --json");

@@ -58,7 +58,9 @@ TEST_CASE("the indicator is within a factor of three of the true error") {
                              beam(Element::tet10, {5, 1, 1}),
                              beam(Element::hex8, {20, 2, 2}),
                              panel(Element::tet4, "cook3d_1"),
-                             panel(Element::tet4_edge_smoothed, "cook3d_1")};
+                             panel(Element::tet4_edge_smoothed, "cook3d_1"),
+                             panel(Element::tet10, "cook3d_coarse_tet10"),
+                             panel(Element::hex8, "cook3d_1_hex")};
   for (const SceneDef& scene : scenes) {
     const double r = ratio(scene);
     CHECK(r > 1.0 / 3);
@@ -66,25 +68,22 @@ TEST_CASE("the indicator is within a factor of three of the true error") {
   }
 }
 
-TEST_CASE("a quadratic mesh file has an upper limit or a reason") {
-  SceneDef on_tet4 = panel(Element::tet10, "cook3d_1");
-  const auto compared = compared_scene(on_tet4);
-  REQUIRE(compared.ok());
-  CHECK(compared.value().comparison == Comparison::worse_element);
+TEST_CASE("Tet10 on a mesh of Tet4 has an upper limit, on one of Tet10 a finer mesh") {
+  const SceneDef on_tet4 = panel(Element::tet10, "cook3d_1");
+  const auto limit = compared_scene(on_tet4);
+  REQUIRE(limit.ok());
+  CHECK(limit.value().comparison == Comparison::worse_element);
   CHECK(ratio(on_tet4) > 1);
-  // Its cells are quadratic: no linear element takes them.
-  const SceneDef on_tet10 = panel(Element::tet10, "cook3d_1_tet10");
-  const RunResult r = run_scene(on_tet10, {});
-  const Accuracy a = estimate_accuracy(on_tet10, r);
-  CHECK(a.entries.empty());
-  CHECK_THAT(a.reason, Catch::Matchers::Contains("no indicator"));
+  const auto finer = compared_scene(panel(Element::tet10, "cook3d_1_tet10"));
+  REQUIRE(finer.ok());
+  CHECK(finer.value().comparison == Comparison::finer_mesh);
+  CHECK(finer.value().scene.bodies[0].refine == 1);
 }
 
 TEST_CASE("scenes without anything better, or without an answer, have a reason") {
-  SceneVariant v;
-  v.element = Element::hex8;
-  v.mesh = "cook3d_1_hex";
-  CHECK_FALSE(compared_scene(cook(v)).ok());
+  const auto lattice = compared_scene(finger_lattice({}));
+  REQUIRE_FALSE(lattice.ok());
+  CHECK_THAT(lattice.error(), ContainsSubstring("no indicator") && ContainsSubstring("spacing"));
   RunResult failed;
   failed.status = RunStatus::not_converged;
   const Accuracy a = estimate_accuracy(test::small_scene(), failed);

@@ -1,0 +1,353 @@
+#include "scenes/run/error_search.h"
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+
+#include "engine/base/available_memory.h"
+#include "engine/base/text.h"
+#include "scenes/run/error_forecast.h"
+#include "scenes/run/outputs.h"
+
+namespace isochor {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+std::string two_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, value < 100 ? "%.2g" : "%.0f", value);
+  return text;
+}
+
+std::string percent(double relative) {
+  return std::isfinite(relative) ? two_digits(100 * relative) + " %" : "more than can be told";
+}
+
+class Search {
+ public:
+  Search(const SceneDef& scene, const ErrorSearchOptions& options, ErrorSearch& out)
+      : scene_(scene), options_(options), out_(out) {}
+  Result<void> prepare();
+  void run();
+
+ private:
+  bool reached() const { return out_.best && indicator(*out_.best) <= options_.error; }
+  double indicator(std::size_t trial) const { return out_.trials[trial].indicator.value_or(kNever); }
+  double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+  std::optional<double> time_left() const;
+
+  bool affordable(std::size_t ladder);
+  std::optional<std::size_t> choose();
+
+  // Runs it; false: the search is over.
+  bool try_next(std::size_t ladder);
+  Result<void> publish(const SceneDef& scene) const;
+  bool adopt(std::size_t trial, const RunResult& result, const Evidence& evidence);
+  std::string trial_folder() const;
+  void conclude();
+  std::string why_no_more() const;
+
+  const SceneDef& scene_;
+  const ErrorSearchOptions& options_;
+  ErrorSearch& out_;
+  SettingChoices choices_;
+  ErrorForecast forecast_;
+  std::vector<std::string> closed_;  // by ladder: why it has no next run; empty: it has
+  Clock::time_point start_ = Clock::now();
+  bool out_of_time_ = false;
+};
+
+Result<void> Search::prepare() {
+  if (!(options_.error > 0) || !(options_.error < 1)) {
+    return Error{"error = " + number(options_.error) +
+                 "; ask for a relative error above 0 and below 1, such as 0.01 or 1%"};
+  }
+  if (options_.run.budget && !(*options_.run.budget > 0))
+    return Error{"budget = " + number(*options_.run.budget) + " s; it must be positive"};
+  if (options_.run.resume)
+    return Error{
+        "resume goes on with one run, and a search for an error makes several; leave one of them out"};
+  if (!has_answers(scene_)) {
+    return Error{
+        "the scene has no probe and no metric with an error of discretization, so there is nothing to "
+        "be within an error; add one under \"probes\" or \"metrics\""};
+  }
+  if (auto r = check_scene(scene_); !r) return r;
+  auto choices = setting_choices(scene_);
+  if (!choices) return choices.failure();
+  choices_ = std::move(choices).value();
+  for (const auto& element : choices_.elements) forecast_.ladders.push_back({element, {}, {}});
+  closed_.resize(forecast_.ladders.size());
+  return {};
+}
+
+std::optional<double> Search::time_left() const {
+  if (!options_.run.budget) return {};
+  return *options_.run.budget - elapsed();
+}
+
+// --- What is expected -------------------------------------------------------------------------------------
+
+// Closes the ladder where its next run asks for more than there is.
+bool Search::affordable(std::size_t l) {
+  const int level = forecast_.ladders[l].levels();
+  std::string& closed = closed_[l];
+  if (level > std::min(options_.most_levels, choices_.most_levels)) {
+    closed = "the mesh has been refined " + std::to_string(level - 1) + " times, no more is tried";
+    return false;
+  }
+  const auto cost = forecast_.cost(l, level);
+  if (!cost) return true;
+  const auto left = time_left();
+  if (left && cost->seconds() > *left) {
+    closed = "the next run would take about " + two_digits(cost->seconds()) + " s and " +
+             two_digits(std::max(0.0, *left)) + " s of the budget are left";
+    out_of_time_ = true;
+    return false;
+  }
+  if (const double memory = available_memory(); cost->bytes() > memory) {
+    closed = "the next run would take about " + two_digits(1e-9 * cost->bytes()) + " GB and " +
+             two_digits(1e-9 * memory) + " GB are free";
+    return false;
+  }
+  return true;
+}
+
+std::optional<std::size_t> Search::choose() {
+  const auto& ladders = forecast_.ladders;
+  // The cheap elements on the mesh as it is: what they differ by tells how far there is to go.
+  for (std::size_t l = 0; l + 1 < ladders.size(); ++l) {
+    if (ladders[l].levels() == 0 && closed_[l].empty() && affordable(l)) return l;
+  }
+  std::optional<std::size_t> best;
+  double least = kNever;
+  for (std::size_t l = 0; l < ladders.size(); ++l) {
+    if (!closed_[l].empty() || !affordable(l)) continue;
+    const auto plan = forecast_.plan(l, options_.error, options_.most_levels);
+    const double cost = plan ? plan->work : kNever;
+    // Where none is expected to reach it, the better element comes nearer.
+    if (!best || cost < least || (cost == kNever && least == kNever)) best = l;
+    least = std::min(least, cost);
+  }
+  return best;
+}
+
+// --- What is run ------------------------------------------------------------------------------------------
+
+std::string Search::trial_folder() const {
+  return options_.run.folder.empty() ? "" : (fs::path(options_.run.folder) / ".trial").string();
+}
+
+bool Search::try_next(std::size_t l) {
+  ErrorLadder& ladder = forecast_.ladders[l];
+  const int level = ladder.levels();
+  Trial trial;
+  trial.setting = {ladder.element, level};
+  if (const auto cost = forecast_.cost(l, level)) trial.predicted_seconds = cost->seconds();
+  const SceneDef scene = with_setting(scene_, choices_, trial.setting);
+  RunOptions options = options_.run;
+  options.folder = trial_folder();
+  options.log = {};
+  options.on_step = {};
+  if (const auto left = time_left()) options.budget = std::max(1e-3, *left);
+  RunResult result = run_scene(scene, options);
+  trial.status = result.status;
+  trial.reason = result.reason;
+  trial.elements = result.elements;
+  trial.unknowns = result.size.displacement_unknowns + result.size.multipliers;
+  trial.seconds = result.wall_s;
+  const std::size_t number = out_.trials.size();
+  out_.trials.push_back(trial);
+  bool goes_on = true;
+  if (result.status == RunStatus::converged) {
+    ladder.answers.push_back(answers_of(result));
+    ladder.costs.push_back(cost_of(result, ladder.element));
+    const Evidence evidence = forecast_.evidence(l).value_or(Evidence{});
+    if (!evidence.how.empty()) {
+      out_.trials[number].indicator = evidence.largest;
+      out_.trials[number].held_by = evidence.held_by;
+      out_.trials[number].how = evidence.how;
+    }
+    if (!out_.best || indicator(number) < indicator(*out_.best)) goes_on = adopt(number, result, evidence);
+  } else {
+    closed_[l] = std::string(to_string(result.status)) + ": " + result.reason;
+    if (!out_.best) out_.result = std::move(result);
+    goes_on = trial.status != RunStatus::interrupted && trial.status != RunStatus::not_written &&
+              trial.status != RunStatus::budget && trial.status != RunStatus::failed;
+  }
+  if (options_.on_trial) options_.on_trial(out_.trials[number]);
+  return goes_on;
+}
+
+// Files of a finished trial take the place of those of the one before.
+Result<void> move_up(const fs::path& from, const fs::path& to) {
+  std::error_code code;
+  fs::create_directories(to, code);
+  std::vector<fs::directory_entry> entries;
+  for (const auto& entry : fs::directory_iterator(from, code)) entries.push_back(entry);
+  for (const auto& entry : entries) {
+    if (entry.is_directory()) {
+      if (auto r = move_up(entry.path(), to / entry.path().filename()); !r) return r;
+    } else {
+      fs::rename(entry.path(), to / entry.path().filename(), code);
+    }
+    if (code) break;
+  }
+  if (code)
+    return Error{"outputs cannot be moved from " + from.string() + " to " + to.string() + ": " +
+                 code.message()};
+  fs::remove_all(from, code);
+  return {};
+}
+
+// What the last trial wrote becomes what the search has written.
+Result<void> Search::publish(const SceneDef& scene) const {
+  if (options_.run.folder.empty()) return {};
+  if (auto opened = RunOutputs::open(options_.run.folder, scene); !opened) return opened.failure();
+  return move_up(trial_folder(), options_.run.folder);
+}
+
+// The best so far: its outputs are those of the search from now on.
+bool Search::adopt(std::size_t trial, const RunResult& result, const Evidence& evidence) {
+  out_.best = trial;
+  out_.result = result;
+  out_.scene = with_setting(scene_, choices_, out_.trials[trial].setting);
+  out_.overrides = overrides_for(scene_, choices_, out_.trials[trial].setting);
+  out_.accuracy = {};
+  out_.accuracy.entries = evidence.entries;
+  out_.accuracy.how = evidence.how;
+  if (evidence.how.empty()) out_.accuracy.reason = "no indicator: there has been nothing to compare with";
+  const Result<void> moved = publish(out_.scene);
+  if (moved) return true;
+  out_.result.status = RunStatus::not_written;
+  out_.result.reason = moved.error();
+  out_.trials[trial].status = RunStatus::not_written;
+  out_.trials[trial].reason = moved.error();
+  return false;
+}
+
+// --- How it ends ------------------------------------------------------------------------------------------
+
+std::string Search::why_no_more() const {
+  std::string text;
+  for (std::size_t l = 0; l < closed_.size(); ++l) {
+    if (!closed_[l].empty())
+      text += (text.empty() ? "" : "; ") + element_text(forecast_.ladders[l].element) + ": " + closed_[l];
+  }
+  return text;
+}
+
+void Search::conclude() {
+  out_.seconds = elapsed();
+  out_.accuracy.seconds = out_.seconds - out_.result.wall_s;
+  const Trial& last = out_.trials.back();
+  if (reached())
+    out_.end = SearchEnd::reached;
+  else if (last.status == RunStatus::interrupted || (options_.run.stop && options_.run.stop()))
+    out_.end = SearchEnd::interrupted;
+  else if (last.status == RunStatus::not_written)
+    out_.end = SearchEnd::not_written;
+  else if (last.status == RunStatus::budget || out_of_time_)
+    out_.end = SearchEnd::budget;
+  else if (out_.best)
+    out_.end = SearchEnd::not_reached;
+  else
+    out_.end = last.status == RunStatus::bad_input ? SearchEnd::bad_input : SearchEnd::failed;
+  if (!out_.best) {
+    out_.sentence = out_.end == SearchEnd::bad_input ? last.reason : "no run converged: " + why_no_more();
+    return;
+  }
+  const Trial& best = out_.trials[*out_.best];
+  const std::string known = best.indicator ? "at most about " + percent(*best.indicator) + " by " + best.how +
+                                                 ", held by \"" + best.held_by + "\""
+                                           : "unknown, since nothing could be compared with it";
+  if (out_.end == SearchEnd::reached) {
+    out_.sentence = "within " + percent(options_.error) + " with " + describe(best.setting) + ": " + known;
+  } else {
+    const std::string more = why_no_more();
+    out_.sentence = percent(options_.error) + " not reached; the best is " + describe(best.setting) + ": " +
+                    known + (more.empty() ? "" : ". No more: " + more);
+  }
+}
+
+void Search::run() {
+  while (!reached()) {
+    const auto next = choose();
+    if (!next || (options_.run.stop && options_.run.stop())) break;
+    if (!try_next(*next)) break;
+  }
+  // Of a search that was stopped before any run had ended, what there is of the first.
+  std::error_code code;
+  const std::string left = trial_folder();
+  if (!out_.best && fs::exists(fs::path(left) / "summary.json", code)) (void)publish(scene_);
+  if (!left.empty()) fs::remove_all(left, code);
+  if (!out_.trials.empty()) conclude();
+}
+
+}  // namespace
+
+const char* to_string(SearchEnd end) {
+  switch (end) {
+    case SearchEnd::reached:
+      return "reached";
+    case SearchEnd::not_reached:
+      return "not_reached";
+    case SearchEnd::budget:
+      return "budget";
+    case SearchEnd::interrupted:
+      return "interrupted";
+    case SearchEnd::bad_input:
+      return "bad_input";
+    case SearchEnd::not_written:
+      return "not_written";
+    case SearchEnd::failed:
+      break;
+  }
+  return "failed";
+}
+
+ErrorSearch search_error(const SceneDef& scene, const ErrorSearchOptions& options) {
+  ErrorSearch out;
+  out.asked = options.error;
+  Search search(scene, options, out);
+  if (auto r = search.prepare(); !r) {
+    out.sentence = r.error();
+    return out;
+  }
+  search.run();
+  if (out.best && !options.run.folder.empty() && out.end != SearchEnd::not_written) {
+    const auto written =
+        write_text((fs::path(options.run.folder) / "summary.json").string(), summary_json(out));
+    if (!written) {
+      out.end = SearchEnd::not_written;
+      out.sentence = "outputs cannot be written: " + written.error();
+    }
+  }
+  return out;
+}
+
+Result<double> parse_error_demand(const std::string& text) {
+  std::string digits = text;
+  while (!digits.empty() && digits.back() == ' ') digits.pop_back();
+  const bool percentage = !digits.empty() && digits.back() == '%';
+  if (percentage) digits.pop_back();
+  while (!digits.empty() && digits.back() == ' ') digits.pop_back();
+  double value = 0;
+  const auto [stop, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const bool whole = code == std::errc() && stop == digits.data() + digits.size();
+  if (percentage) value *= 0.01;
+  if (whole && value > 0 && value < 1) return value;
+  return Error{"error = \"" + text +
+               "\"; give a percentage above 0 % and below 100 %, as in 1%, or a fraction, as in 0.01"};
+}
+
+}  // namespace isochor

@@ -1,0 +1,68 @@
+// An answer within an error that is asked for, at the least predicted cost: which element, on which mesh.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenes/run/accuracy.h"
+#include "scenes/run/run.h"
+#include "scenes/run/setting.h"
+
+namespace isochor {
+
+// One run on the way.
+struct Trial {
+  Setting setting;
+  RunStatus status = RunStatus::bad_input;
+  std::string reason;  // why it did not converge
+  Index elements = 0, unknowns = 0;
+  double seconds = 0, predicted_seconds = 0;  // predicted 0: there was nothing to predict from
+  std::optional<double> indicator;            // the largest of all metrics and probes, relative
+  std::string held_by, how;                   // whose it is, and how it is known
+};
+
+enum class SearchEnd : std::uint8_t {
+  reached,
+  not_reached,  // within the levels and the memory there are
+  budget,       // the time allowed is used up, or what is left is too short for the next run
+  interrupted,
+  bad_input,
+  not_written,
+  failed,  // no run converged
+};
+const char* to_string(SearchEnd end);
+
+struct ErrorSearchOptions {
+  double error = 0.01;  // relative, of every metric and probe
+  int most_levels = 4;  // of refinement beyond the scene's mesh
+  RunOptions run;       // the budget is that of all runs together; outputs are those of the best run
+  std::function<void(const Trial&)> on_trial;
+};
+
+struct ErrorSearch {
+  SearchEnd end = SearchEnd::bad_input;
+  std::string sentence;  // how the answer is known, or why there is none
+  double asked = 0;
+  std::vector<Trial> trials;
+  std::optional<std::size_t> best;  // of the trials; none: no run converged
+  SceneDef scene;                   // of the best
+  std::string overrides;            // what makes the best out of the scene
+  RunResult result;                 // of the best, or of the last that was tried
+  Accuracy accuracy;                // of the best
+  double seconds = 0;               // of all runs
+};
+
+// Runs settings until one is known to be good enough: first the cheap elements on the mesh of the scene, then
+// always what is expected to reach the error at the least predicted cost. Ctrl-C and the budget leave the
+// best so far, with its outputs.
+ErrorSearch search_error(const SceneDef& scene, const ErrorSearchOptions& options);
+
+// A percentage as "1%" or "1 %", or a fraction as "0.01".
+Result<double> parse_error_demand(const std::string& text);
+
+// summary.json of the best run, with the indicators and the trials under "accuracy".
+std::string summary_json(const ErrorSearch& search);
+
+}  // namespace isochor

@@ -1,0 +1,99 @@
+#include "scenes/run/setting.h"
+
+#include <algorithm>
+
+#include "scenes/body_parts.h"
+#include "scenes/check_values.h"
+
+namespace isochor {
+
+namespace {
+
+constexpr int kMostRefined = 8;  // of the key bodies[].refine
+
+const char* key_word(Element e) {
+  switch (e) {
+    case Element::tet4:
+      return "tet4";
+    case Element::tet4_edge_smoothed:
+      return "tet4_edge_smoothed";
+    case Element::tet10:
+      return "tet10";
+    default:
+      return "hex8";
+  }
+}
+
+}  // namespace
+
+std::string element_text(const std::optional<Element>& element) {
+  if (!element) return "elements of the scene";
+  switch (*element) {
+    case Element::tet4:
+      return "Tet4";
+    case Element::tet4_edge_smoothed:
+      return "edge-smoothed Tet4";
+    case Element::tet10:
+      return "Tet10";
+    default:
+      return "Hex8";
+  }
+}
+
+std::string describe(const Setting& s) {
+  const std::string mesh = s.refine == 0   ? "mesh of the scene"
+                           : s.refine == 1 ? "mesh refined once"
+                           : s.refine == 2 ? "mesh refined twice"
+                                           : "mesh refined " + std::to_string(s.refine) + " times";
+  return element_text(s.element) + ", " + mesh;
+}
+
+Result<SettingChoices> setting_choices(const SceneDef& scene) {
+  SettingChoices out;
+  out.most_levels = kMostRefined;
+  bool any = false;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const SceneBody& body = scene.bodies[b];
+    if (std::holds_alternative<LatticeMesh>(body.mesh)) {
+      return Error{
+          place("bodies", b) + " (\"" + body.name +
+          "\") has a lattice for a mesh, which cannot be refined: its cubes are cut anew from the surface at "
+          "every spacing; run the scene with mesh.lattice.spacing halved and compare"};
+    }
+    const auto made = make_body(body, scene.folder, place("bodies", b));
+    if (!made) return made.failure();
+    const Mesh& mesh = made.value().def.mesh;
+    out.linear_tets.push_back(mesh.cell_type == CellType::tet4);
+    out.cells.push_back(mesh.cell_count());
+    out.most_levels = std::min(out.most_levels, kMostRefined - body.refine);
+    any = any || out.linear_tets.back();
+  }
+  if (any)
+    out.elements = {Element::tet4, Element::tet4_edge_smoothed, Element::tet10};
+  else
+    out.elements = {std::nullopt};
+  return out;
+}
+
+SceneDef with_setting(const SceneDef& scene, const SettingChoices& choices, const Setting& setting) {
+  SceneDef out = scene;
+  for (std::size_t b = 0; b < out.bodies.size(); ++b) {
+    if (setting.element && choices.linear_tets[b]) out.bodies[b].element = *setting.element;
+    out.bodies[b].refine += setting.refine;
+  }
+  return out;
+}
+
+std::string overrides_for(const SceneDef& scene, const SettingChoices& choices, const Setting& setting) {
+  std::string out;
+  const SceneDef wanted = with_setting(scene, choices, setting);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const SceneBody &is = scene.bodies[b], &be = wanted.bodies[b];
+    const auto set = [&] { return std::string(out.empty() ? "" : " ") + "--set " + place("bodies", b); };
+    if (is.element != be.element) out += set() + ".element=" + key_word(be.element);
+    if (is.refine != be.refine) out += set() + ".refine=" + std::to_string(be.refine);
+  }
+  return out;
+}
+
+}  // namespace isochor

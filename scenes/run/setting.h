@@ -1,0 +1,37 @@
+// An element and a mesh that a scene may be run with.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenes/scene.h"
+
+namespace isochor {
+
+struct Setting {
+  std::optional<Element> element;  // of all bodies whose cells leave a choice; empty: each has its own
+  int refine = 0;                  // levels beyond what the scene has
+  friend bool operator==(const Setting&, const Setting&) = default;
+};
+
+// "edge-smoothed Tet4, mesh refined once"
+std::string describe(const Setting& setting);
+std::string element_text(const std::optional<Element>& element);
+
+// What settings of a scene can differ in.
+struct SettingChoices {
+  std::vector<bool> linear_tets;  // by body: its mesh has Tet4 cells, which leave a choice
+  std::vector<Index> cells;       // by body, as the scene is
+  std::vector<std::optional<Element>>
+      elements;         // from the cheapest to the best; one without value: no choice
+  int most_levels = 0;  // before a body cannot be refined further
+};
+// Reads the meshes. An error names the body that cannot be refined.
+Result<SettingChoices> setting_choices(const SceneDef& scene);
+
+SceneDef with_setting(const SceneDef& scene, const SettingChoices& choices, const Setting& setting);
+// What gives the same scene: "--set bodies[0].element=tet10 --set bodies[0].refine=1".
+std::string overrides_for(const SceneDef& scene, const SettingChoices& choices, const Setting& setting);
+
+}  // namespace isochor
