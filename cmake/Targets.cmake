@@ -11,6 +11,11 @@ target_compile_options(isochor_options INTERFACE
   $<$<BOOL:${ISOCHOR_WERROR}>:-Werror>
   # g++ 12 reports its own AVX intrinsics as uninitialized.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>
+  # Where addresses have 32 bits, vectors are indexed by less than the counts of entries are kept in; what memory holds
+  # fits both.
+  $<$<AND:$<CXX_COMPILER_ID:Clang>,$<EQUAL:${CMAKE_SIZEOF_VOID_P},4>>:-Wno-shorten-64-to-32>
+  # Clang 14 takes a member that a generic lambda calls for no use of `this`.
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-unused-lambda-capture>
   # Sums are written in the order that must hold; contraction to fused multiply-add is the compiler's choice per
   # build, not per thread count.
   $<$<BOOL:${ISOCHOR_NATIVE}>:-march=native>)
@@ -71,15 +76,26 @@ endfunction()
 
 isochor_sources(_base engine/base)
 isochor_module(base ${_base})
-target_link_libraries(isochor_base PRIVATE TBB::tbb)
+if(ISOCHOR_WITH_TBB)
+  target_link_libraries(isochor_base PRIVATE TBB::tbb)
+else()
+  target_compile_definitions(isochor_base PRIVATE ISOCHOR_WITHOUT_TBB)
+endif()
 
 isochor_sources(_mesh engine/mesh engine/mesh/check engine/mesh/make)
 isochor_module(mesh ${_mesh})
 target_link_libraries(isochor_mesh PUBLIC isochor_base)
 
 isochor_sources(_mesh_files engine/mesh/read engine/mesh/write)
+set(_vtu_libraries pugixml::pugixml ZLIB::ZLIB)
+if(ISOCHOR_WITH_VTU)
+  list(FILTER _mesh_files EXCLUDE REGEX "/without_vtu\\.cpp$")
+else()
+  list(FILTER _mesh_files EXCLUDE REGEX "/(read|write)_vtu\\.cpp$")
+  set(_vtu_libraries)
+endif()
 isochor_module(mesh_files ${_mesh_files})
-target_link_libraries(isochor_mesh_files PUBLIC isochor_mesh PRIVATE pugixml::pugixml ZLIB::ZLIB)
+target_link_libraries(isochor_mesh_files PUBLIC isochor_mesh PRIVATE ${_vtu_libraries})
 
 isochor_sources(_solvers engine/solvers engine/solvers/front engine/solvers/iterative engine/solvers/foreign)
 isochor_module(solvers ${_solvers})
@@ -108,7 +124,7 @@ isochor_sources(_engine engine/math engine/system engine/elements engine/solve e
 isochor_module(engine ${_engine})
 # Square roots set no errno, so that they are taken eight at a time.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/engine/math/svd3.cpp PROPERTIES COMPILE_OPTIONS -fno-math-errno)
-target_link_libraries(isochor_engine PUBLIC isochor_mesh isochor_solvers PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen> TBB::tbb)
+target_link_libraries(isochor_engine PUBLIC isochor_mesh isochor_solvers PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>)
 isochor_precompile(isochor_engine all engine/system/system.h)
 
 isochor_sources(_materials materials)
@@ -145,7 +161,10 @@ if(BUILD_SHARED_LIBS)
     SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_compile_features(isochor PUBLIC cxx_std_20)
   target_include_directories(isochor PUBLIC ${_public_include})
-  set(_private TBB::tbb Threads::Threads pugixml::pugixml ZLIB::ZLIB ${CMAKE_DL_LIBS})
+  set(_private Threads::Threads ${_vtu_libraries} ${CMAKE_DL_LIBS})
+  if(ISOCHOR_WITH_TBB)
+    list(APPEND _private TBB::tbb)
+  endif()
   foreach(backend MUMPS CHOLMOD METIS)
     if(ISOCHOR_HAVE_${backend})
       list(APPEND _private ${backend}::${backend})

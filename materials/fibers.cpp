@@ -47,12 +47,29 @@ struct FiberResponse {
 
 constexpr FiberResponse kNone{std::numeric_limits<double>::infinity(), 0, 0};
 
+// Ei(x) for x > 0.
+double exponential_integral(double x) {
+#ifdef __cpp_lib_math_special_functions
+  return std::expint(x);
+#else
+  // libc++ has no special functions. All terms are positive: nothing cancels.
+  double sum = 0, term = 1;
+  for (int n = 1; n < 2000; ++n) {
+    term *= x / n;
+    sum += term / n;
+    if (n > x && term < 1e-17 * sum) break;
+  }
+  return 0.57721566490153286 + std::log(x) + sum;
+#endif
+}
+
 // T = s dpsi/ds over the stretch s > 1.
 FiberResponse toe(const Family& f, double E) {
   const double s = std::sqrt(1 + E), end = std::min(s, f.straight_stretch);
   // The integral of k1 (exp(k2 (s - 1)) - 1)/s by the exponential integral.
   const double shrink = std::exp(-f.k2);
-  double psi = f.k1 * (shrink * (std::expint(f.k2 * end) - std::expint(f.k2)) - std::log(end));
+  double psi =
+      f.k1 * (shrink * (exponential_integral(f.k2 * end) - exponential_integral(f.k2)) - std::log(end));
   double T = f.k1 * std::expm1(f.k2 * (end - 1)), slope = f.k1 * f.k2 * std::exp(f.k2 * (end - 1));
   if (s > end) {
     const double offset = T - f.straight_modulus * end;

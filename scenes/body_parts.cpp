@@ -1,9 +1,10 @@
 #include "scenes/body_parts.h"
 
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+
+#include "engine/base/chars.h"
 
 namespace isochor {
 
@@ -42,7 +43,7 @@ Result<std::vector<double>> read_field(const CellField& field, const std::string
   std::string word;
   while (in >> word) {
     double v = 0;
-    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), v);
+    const auto [stop, error] = isochor::from_chars(word.data(), word.data() + word.size(), v);
     if (error != std::errc() || stop != word.data() + word.size() || !std::isfinite(v)) {
       return Error{path + ": entry " + std::to_string(values.size()) + " is \"" + word +
                    "\"; give one finite number a cell, divided by blanks or lines"};

@@ -17,7 +17,7 @@ class ByteWriter {
     if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>)
       raw(&v, sizeof v);
     else
-      for_each_field(v, [this](const auto& member) { put(member); });
+      for_each_field(v, [this](const auto& member) { this->put(member); });
   }
   void put(const std::string& text) {
     put(static_cast<std::uint64_t>(text.size()));

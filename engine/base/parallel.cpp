@@ -1,14 +1,18 @@
 #include "engine/base/parallel.h"
 
+#ifndef ISOCHOR_WITHOUT_TBB
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
+#endif
 
 #include <algorithm>
 #include <functional>
 
 namespace isochor {
+
+#ifndef ISOCHOR_WITHOUT_TBB
 
 struct TbbParallel::Arena {
   tbb::task_arena arena;
@@ -17,10 +21,6 @@ struct TbbParallel::Arena {
 TbbParallel::TbbParallel(int threads)
     : threads_(threads > 0 ? threads : tbb::this_task_arena::max_concurrency()) {
   arena_ = new Arena{tbb::task_arena(threads_)};
-}
-
-TbbParallel::~TbbParallel() {
-  delete arena_;
 }
 
 void TbbParallel::run(Index n, Index grain, RangeBody body) const {
@@ -39,6 +39,23 @@ void TbbParallel::run(Index n, Index grain, RangeBody body) const {
         },
         tbb::simple_partitioner());
   });
+}
+
+#else
+
+// Chunks in turn on the caller's thread: borders and answers are those of any number of threads.
+struct TbbParallel::Arena {};
+
+TbbParallel::TbbParallel(int) : arena_(nullptr), threads_(1) {}
+
+void TbbParallel::run(Index n, Index grain, RangeBody body) const {
+  for (Index begin = 0; begin < n; begin += grain) body(begin, std::min(n, begin + grain));
+}
+
+#endif
+
+TbbParallel::~TbbParallel() {
+  delete arena_;
 }
 
 void HostParallel::run(Index n, Index grain, RangeBody body) const {

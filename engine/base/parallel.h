@@ -33,7 +33,7 @@ class Parallel {
   virtual std::unique_ptr<Parallel> another() const = 0;
 };
 
-// oneTBB arena with the given number of threads; 0: all the machine has.
+// oneTBB arena with this number of threads; 0: all the machine has. Without oneTBB: the thread that calls.
 class TbbParallel final : public Parallel {
  public:
   explicit TbbParallel(int threads);

@@ -1,12 +1,12 @@
 #include "engine/mesh/words.h"
 
-#include <charconv>
+#include "engine/base/chars.h"
 
 namespace isochor::mesh_files {
 
 std::string shown(double value) {
   char buffer[32];
-  const auto [end, status] = std::to_chars(buffer, buffer + sizeof buffer, value);
+  const auto [end, status] = isochor::to_chars(buffer, buffer + sizeof buffer, value);
   return status == std::errc() ? std::string(buffer, end) : std::string("?");
 }
 

@@ -1,5 +1,7 @@
 // Rule: one answer at any thread count, to the last bit.
+#ifndef ISOCHOR_WITHOUT_TBB
 #include <tbb/global_control.h>
+#endif
 
 #include "support/worlds.h"
 
@@ -49,8 +51,10 @@ std::vector<std::uint64_t> hashes(Element element, SchemePtr scheme, int threads
 }  // namespace
 
 TEST_CASE("the same bits at 1, 2, 4 and 8 threads") {
+#ifndef ISOCHOR_WITHOUT_TBB
   // Eight real threads on a machine with fewer processors too.
   const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, 8);
+#endif
   for (const Element element : kElements) {
     for (const bool dynamic : {true, false}) {
       INFO(name_of(element) << (dynamic ? ", dynamic" : ", static"));

@@ -17,7 +17,7 @@ Eigen::MatrixXd dense_preconditioner(IterativeSolver& solver, Index size) {
   std::vector<double> unit(at(size), 0.0), column(at(size));
   for (Index c = 0; c < size; ++c) {
     unit[at(c)] = 1;
-    solver.precondition(unit, column);
+    solver.apply_preconditioner(unit, column);
     unit[at(c)] = 0;
     b.col(c) = Eigen::Map<const Eigen::VectorXd>(column.data(), size);
   }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/base/chars.h"
+
 namespace isochor::mesh_files {
 
 namespace {
@@ -53,7 +55,7 @@ T Cursor::number(const char* what, const char* kind) {
   // from_chars takes no plus sign, but some exporters write one.
   if (*first == '+' && first + 1 < last && first[1] != '-') ++first;
   T value{};
-  const auto [end, status] = std::from_chars(first, last, value);
+  const auto [end, status] = isochor::from_chars(first, last, value);
   if (status != std::errc() || (end < last && !is_space(*end))) {
     fail(join(what, " should be ", kind, " but reads ", quoted(peek_word())), rewrite_file);
   }

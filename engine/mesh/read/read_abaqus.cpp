@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/base/chars.h"
 #include "engine/mesh/cell_shape.h"
 #include "engine/mesh/read/readers.h"
 
@@ -111,7 +112,7 @@ template <class T>
 T number(AbaqusFile& f, std::string_view text, const char* what) {
   T value{};
   if (text.starts_with('+')) text.remove_prefix(1);
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, status] = isochor::from_chars(text.data(), text.data() + text.size(), value);
   if (status != std::errc() || end != text.data() + text.size())
     f.at.fail(join(what, " should be a number but reads ", quoted(text)), rewrite_file);
   return value;

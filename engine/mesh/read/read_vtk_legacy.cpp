@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "engine/base/chars.h"
 #include "engine/mesh/read/readers.h"
 #include "engine/mesh/read/vtk_parts.h"
 
@@ -271,7 +272,7 @@ void read_header(VtkFile& f) {
   constexpr std::string_view start = "# vtk DataFile Version ";
   double version = 0;
   if (first.size() > start.size()) {
-    std::from_chars(first.data() + start.size(), first.data() + first.size(), version);
+    isochor::from_chars(first.data() + start.size(), first.data() + first.size(), version);
   }
   if (!(version >= 1.0 && version < 6.0)) {
     at.fail("the header reads " + quoted(first), "versions 1.0 to 5.1 of the legacy format are read");

@@ -1,9 +1,11 @@
 // The thread count of the BLAS under the solvers. Which BLAS that is, is decided when the program is loaded.
 #include <atomic>
+#include <cstdint>
+#include <initializer_list>
 
 #include "isochor/threads.h"
 
-#if __has_include(<dlfcn.h>)
+#if __has_include(<dlfcn.h>) && !defined(__EMSCRIPTEN__)  // a WebAssembly module has no loader to ask
 #include <dlfcn.h>
 #define ISOCHOR_HAVE_DLSYM
 #endif

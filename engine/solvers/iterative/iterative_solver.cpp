@@ -169,7 +169,7 @@ void IterativeSolver::apply(std::span<const double> b, std::span<double> x) {
   for (std::size_t r = 0; r < row_inverse_.size(); ++r) x[n + r] = row_inverse_[r] * b[n + r];
 }
 
-void IterativeSolver::precondition(std::span<const double> x, std::span<double> y) {
+void IterativeSolver::apply_preconditioner(std::span<const double> x, std::span<double> y) {
   const auto place = matrix_.place();
   std::fill(b_.begin(), b_.end(), 0.0);
   for (std::size_t u = 0; u < place.size(); ++u) b_[at(place[u])] = x[u];

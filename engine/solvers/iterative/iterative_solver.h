@@ -42,7 +42,7 @@ class IterativeSolver final : public LinearSolver {
                        std::span<double> solution) override;
 
   // y = preconditioner times x, in the order of the pattern.
-  void precondition(std::span<const double> x, std::span<double> y);
+  void apply_preconditioner(std::span<const double> x, std::span<double> y);
   const Multigrid& multigrid() const { return multigrid_; }
   std::size_t bytes() const;
 
