@@ -33,7 +33,7 @@ void print_rows(const Price& p) {
                duration(row.search_s), memory(row.cost.bytes())});
   }
   std::printf("\n%s", table.text("  ").c_str());
-  std::printf("  by %zu runs in %s; errors as of second order, times within a factor of some two\n",
+  std::printf("  by %zu runs in %s; errors as of second order, times by what elements cost on this machine\n",
               p.trials.size(), duration(p.seconds).c_str());
 }
 
