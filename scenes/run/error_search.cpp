@@ -295,26 +295,6 @@ void Search::run() {
 
 }  // namespace
 
-const char* to_string(SearchEnd end) {
-  switch (end) {
-    case SearchEnd::reached:
-      return "reached";
-    case SearchEnd::not_reached:
-      return "not_reached";
-    case SearchEnd::budget:
-      return "budget";
-    case SearchEnd::interrupted:
-      return "interrupted";
-    case SearchEnd::bad_input:
-      return "bad_input";
-    case SearchEnd::not_written:
-      return "not_written";
-    case SearchEnd::failed:
-      break;
-  }
-  return "failed";
-}
-
 ErrorSearch search_error(const SceneDef& scene, const ErrorSearchOptions& options) {
   ErrorSearch out;
   out.asked = options.error;

@@ -32,7 +32,26 @@ enum class SearchEnd : std::uint8_t {
   not_written,
   failed,  // no run converged
 };
-const char* to_string(SearchEnd end);
+// Here, so that summaries do not bring the search with them: hosts without files have none.
+inline const char* to_string(SearchEnd end) {
+  switch (end) {
+    case SearchEnd::reached:
+      return "reached";
+    case SearchEnd::not_reached:
+      return "not_reached";
+    case SearchEnd::budget:
+      return "budget";
+    case SearchEnd::interrupted:
+      return "interrupted";
+    case SearchEnd::bad_input:
+      return "bad_input";
+    case SearchEnd::not_written:
+      return "not_written";
+    case SearchEnd::failed:
+      break;
+  }
+  return "failed";
+}
 
 struct ErrorSearchOptions {
   double error = 0.01;  // relative, of every metric and probe
