@@ -92,7 +92,8 @@ struct LiveArguments {
   std::string scene = "finger";
   std::vector<std::string> overrides;
   std::string host = "127.0.0.1";
-  std::string folder;  // of recordings; empty: out/live_NAME
+  std::string folder;     // of recordings; empty: out/live_NAME
+  std::string export_to;  // a page in the place of a server; empty: none
   int port = 0, threads = 0;
   double step_limit = 60;  // [s]
   bool dynamic = false, readonly = false, paused = false, record = false, quiet_browser = false;
@@ -106,6 +107,8 @@ int refuse(const std::string& what);
 
 int run(const RunArguments& arguments);
 int live(const LiveArguments& arguments);
+// A scene as one page; dynamic already where that was asked for.
+int export_live(const LiveArguments& arguments, const SceneDef& scene);
 int view(const ViewArguments& arguments);
 int study(const StudyArguments& arguments);
 int fit_laws(const FitArguments& arguments);

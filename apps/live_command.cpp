@@ -13,17 +13,6 @@
 
 namespace isochor::app {
 
-#ifndef ISOCHOR_HAVE_HTTPLIB
-
-int live(const LiveArguments&) {
-  std::fprintf(stderr,
-               "isochor: live is not in this build; install libcpp-httplib-dev, configure anew with "
-               "-DISOCHOR_WITH_LIVE=ON and build\n");
-  return unavailable;
-}
-
-#else
-
 namespace {
 
 int refuse(Exit code, const std::string& sentence) {
@@ -40,6 +29,8 @@ void set_in_motion(AnalysisDef& a) {
   a.duration = 60;
 }
 
+#ifdef ISOCHOR_HAVE_HTTPLIB
+
 void greet(const LiveArguments& a, const live::Server& server, const SceneDef& scene) {
   std::printf("%s\n", server.link().c_str());
   if (!live::is_loopback(a.host))
@@ -54,21 +45,15 @@ void greet(const LiveArguments& a, const live::Server& server, const SceneDef& s
   std::fflush(stdout);
 }
 
-}  // namespace
-
-int live(const LiveArguments& a) {
-  auto scene = find_scene_named(a.scene, a.overrides);
-  if (!scene) return refuse(bad_input, scene.error());
+int serve(const LiveArguments& a, const SceneDef& def) {
   live::ServerOptions server_options{a.host, a.port, live_page()};
   if (server_options.page.empty())
     return refuse(unavailable, "this build has no page (node and npm were missing when it was made)");
-  if (a.dynamic) set_in_motion(scene.value().analysis);
   stop_on_signals();
   live::SimulationOptions options;
   options.threads = a.threads;
-  options.folder = a.folder.empty() ? "out/live_" + scene.value().name : a.folder;
+  options.folder = a.folder.empty() ? "out/live_" + def.name : a.folder;
   options.step_limit = a.step_limit;
-  const SceneDef def = scene.value();
   // Told here: the first step is too late for whoever looks away then.
   if (a.record) {
     if (auto r = RunOutputs::open(options.folder, def); !r) return refuse(not_written, r.error());
@@ -99,6 +84,23 @@ int live(const LiveArguments& a) {
   return success;
 }
 
+#else
+
+int serve(const LiveArguments&, const SceneDef&) {
+  return refuse(unavailable,
+                "live is not in this build; install libcpp-httplib-dev, configure anew with "
+                "-DISOCHOR_WITH_LIVE=ON and build");
+}
+
 #endif
+
+}  // namespace
+
+int live(const LiveArguments& a) {
+  auto scene = find_scene_named(a.scene, a.overrides);
+  if (!scene) return refuse(bad_input, scene.error());
+  if (a.dynamic) set_in_motion(scene.value().analysis);
+  return a.export_to.empty() ? serve(a, scene.value()) : export_live(a, scene.value());
+}
 
 }  // namespace isochor::app

@@ -168,6 +168,12 @@ void add_live(CLI::App& top, app::LiveArguments& a) {
   c->add_flag("--paused", a.paused, "Begin at rest");
   c->add_flag("--readonly", a.readonly, "Viewers may look on and change nothing");
   c->add_flag("--no-browser", a.quiet_browser, "Only print the link");
+  CLI::Option* page =
+      c->add_option("--export", a.export_to, "Write one page that runs the scene without a server, and end")
+          ->type_name("FILE.html");
+  for (const char* served :
+       {"--host", "--port", "--threads", "--step-limit", "--out", "--record", "--readonly"})
+    page->excludes(c->get_option(served));
   c->footer(kLiveFooter);
 }
 

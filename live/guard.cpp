@@ -1,7 +1,7 @@
 #include "live/guard.h"
 
 #include <arpa/inet.h>
-#include <sys/random.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@ namespace isochor::live {
 
 std::string random_token() {
   std::array<unsigned char, 16> bytes{};
-  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) return {};
+  if (getentropy(bytes.data(), bytes.size()) != 0) return {};
   static constexpr std::string_view digits = "0123456789abcdef";
   std::string out;
   for (const unsigned char b : bytes) {

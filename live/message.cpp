@@ -1,6 +1,5 @@
 #include "live/message.h"
 
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -22,7 +21,12 @@ class Writer {
   void u32(std::uint32_t v) {
     for (int k = 0; k < 4; ++k) out_ += static_cast<char>(v >> (8 * k) & 255u);
   }
-  void f32(double v) { u32(std::bit_cast<std::uint32_t>(static_cast<float>(v))); }
+  void f32(double v) {
+    const auto narrow = static_cast<float>(v);
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &narrow, sizeof bits);  // libc++ has std::bit_cast since version 14
+    u32(bits);
+  }
   void points(const std::vector<Vec3>& all) {
     for (const Vec3& p : all) {
       for (int k = 0; k < 3; ++k) f32(p[k]);
@@ -112,6 +116,7 @@ std::string scene_message(const Simulation& simulation, bool readonly) {
                      {"name", scene.name},
                      {"version", version()},
                      {"readonly", readonly},
+                     {"records", simulation.records()},
                      {"notes", simulation.notes()},
                      {"dynamic", simulation.dynamic()},
                      {"step", simulation.step_length()},

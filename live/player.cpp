@@ -59,7 +59,8 @@ double Tempo::factor(Clock::time_point now) const {
   return w > 0 ? sum / w : 0;
 }
 
-Result<std::unique_ptr<Player>> Player::start(SceneDef scene, SimulationOptions options, bool playing) {
+Result<std::unique_ptr<Player>> Player::start(SceneDef scene, SimulationOptions options, bool playing,
+                                              Drive drive) {
   std::unique_ptr<Player> player(new Player(playing));
   Player* self = player.get();
   options.interrupted = [self] { return self->interrupt_.load(std::memory_order_relaxed); };
@@ -67,8 +68,8 @@ Result<std::unique_ptr<Player>> Player::start(SceneDef scene, SimulationOptions 
   if (!simulation) return simulation.failure();
   player->simulation_ = std::move(simulation).value();
   player->latest_ = std::make_shared<Shown>();
-  player->publish(true, false, false);
-  player->thread_ = std::thread([self] { self->run(); });
+  player->publish({true, false}, false);
+  if (drive == Drive::thread) player->thread_ = std::thread([self] { self->run(); });
   return player;
 }
 
@@ -84,8 +85,8 @@ Result<void> Player::stop() {
   }
   work_.notify_all();
   news_.notify_all();
-  if (thread_.joinable()) {
-    thread_.join();
+  if (thread_.joinable()) thread_.join();
+  if (simulation_) {
     auto closed = simulation_->close();
     if (ended_) ended_ = closed;
   }
@@ -128,6 +129,7 @@ ShownPtr Player::wait(std::uint64_t after, bool fields, milliseconds timeout) {
   asked_ = now;
   if (fields) fields_wanted_ = now;
   if (news) work_.notify_all();
+  if (!thread_.joinable()) return latest_;
   const auto there = [&] { return over_ || (latest_->number > after && (latest_->values || !fields)); };
   news_.wait_for(lock, timeout, there);
   return latest_;
@@ -137,11 +139,15 @@ void Player::run() {
   try {
     live();
   } catch (const std::bad_alloc&) {
-    const std::lock_guard lock(mutex_);
-    over_ = true;
-    ended_ = Error{"memory ran out; take a coarser mesh or give the process more"};
+    end_without_memory();
   }
   news_.notify_all();
+}
+
+void Player::end_without_memory() {
+  const std::lock_guard lock(mutex_);
+  over_ = true;
+  ended_ = Error{"memory ran out; take a coarser mesh or give the process more"};
 }
 
 bool Player::over() const {
@@ -165,34 +171,56 @@ bool Player::lacks(bool fields) const {
   return fields && (!latest_->values || values_old_);
 }
 
+Player::Asked Player::asked(Clock::time_point now) const {
+  return {now - asked_ < kForgotten, now - fields_wanted_ < kForgotten};
+}
+
+// What has changed is shown as soon as a picture is due, and what moves goes on when its time has come.
+Player::Clock::time_point Player::due(Clock::time_point now, const Asked& by) const {
+  Clock::time_point when = now + kIdle;
+  if (fresh_) when = std::min(when, by.watched ? picture_.next() : unseen_.next());
+  if (lacks(by.fields)) when = std::min(when, latest_->values && moves() ? fields_.next() : now);
+  if (moves()) when = std::min(when, single_ ? now : next_step_);
+  return when;
+}
+
 void Player::live() {
-  while (true) {
-    if (!work()) return;
-    bool watched = false, fields = false;
+  while (work()) {
+    Asked by;
     {
       std::unique_lock lock(mutex_);
       const auto now = Clock::now();
-      watched = now - asked_ < kForgotten;
-      fields = now - fields_wanted_ < kForgotten;
-      // What has changed is shown as soon as a picture is due, and what moves goes on when its time has come.
-      Clock::time_point when = now + kIdle;
-      if (fresh_) when = std::min(when, watched ? picture_.next() : unseen_.next());
-      if (lacks(fields)) when = std::min(when, latest_->values && moves() ? fields_.next() : now);
-      if (moves()) when = std::min(when, single_ ? now : next_step_);
+      by = asked(now);
+      const auto when = due(now, by);
       if (when > now) {
         work_.wait_until(lock, when, [&] {
-          const auto then = Clock::now();
-          const bool newly =
-              (!watched && then - asked_ < kForgotten) || (!fields && then - fields_wanted_ < kForgotten);
-          return over_ || !waiting_.empty() || newly;
+          const Asked then = asked(Clock::now());
+          return over_ || !waiting_.empty() || (!by.watched && then.watched) || (!by.fields && then.fields);
         });
         continue;
       }
     }
-    const bool steps = moves() && (single_ || Clock::now() >= next_step_);
-    if (steps) make_step();
-    if (publish(watched, fields, steps)) answers_ = answers_ && !steps && moves();
+    act(by);
   }
+}
+
+Player::Clock::time_point Player::turn() {
+  try {
+    if (!work()) return Clock::time_point::max();
+    const auto now = Clock::now();
+    const Asked by = asked(now);
+    if (const auto when = due(now, by); when > now) return when;
+    act(by);
+  } catch (const std::bad_alloc&) {
+    end_without_memory();
+  }
+  return Clock::now();
+}
+
+void Player::act(const Asked& by) {
+  const bool steps = moves() && (single_ || Clock::now() >= next_step_);
+  if (steps) make_step();
+  if (publish(by, steps)) answers_ = answers_ && !steps && moves();
 }
 
 bool Player::work() {
@@ -256,24 +284,24 @@ void Turn::done(Clock::time_point begin, Clock::time_point end) {
   next_ = begin + seconds_of<Clock>(std::max(1 / most_per_s_, cost_ / share_));
 }
 
-bool Player::publish(bool watched, bool fields, bool stepped) {
+bool Player::publish(const Asked& by, bool stepped) {
   const auto begin = Clock::now();
   // Values that somebody waits for are made at once, others when their turn has come, and the last ones at
   // rest.
-  const bool first = fields && !latest_->values;
-  const bool anew = first || (fields && (fresh_ || values_old_) && (fields_.due(begin) || !moves()));
+  const bool first = by.fields && !latest_->values;
+  const bool anew = first || (by.fields && (fresh_ || values_old_) && (fields_.due(begin) || !moves()));
   // What a command has done is shown behind the next step, out of turn.
-  const bool due = (answers_ && stepped) || (watched ? picture_.due(begin) : unseen_.due(begin));
+  const bool due = (answers_ && stepped) || (by.watched ? picture_.due(begin) : unseen_.due(begin));
   if (!anew && !(fresh_ && due)) return false;
   auto shown = std::make_shared<Shown>();
   static_cast<Picture&>(*shown) = simulation_->picture(anew);
   if (anew) {
     shown->values = std::make_shared<std::vector<std::vector<double>>>(std::move(shown->frame.fields));
     fields_.done(begin, Clock::now());
-  } else if (fields) {
+  } else if (by.fields) {
     shown->values = latest_->values;
   }
-  values_old_ = fields && !anew && (values_old_ || fresh_);
+  values_old_ = by.fields && !anew && (values_old_ || fresh_);
   shown->number = ++number_;
   shown->playing = playing_;
   shown->settled = playing_ && simulation_->settled();

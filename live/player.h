@@ -70,15 +70,25 @@ class Player {
   static constexpr std::size_t most_waiting = 256;
   static constexpr double lowest_speed = 0.01, highest_speed = 1000;
 
+  using Clock = std::chrono::steady_clock;
+  // In a thread of its own, or in turns that the caller gives it, where there are no threads (live/wasm).
+  enum class Drive : std::uint8_t { thread, caller };
+
   // `options.interrupted` is the player's own. Begins in motion where `playing`.
-  static Result<std::unique_ptr<Player>> start(SceneDef scene, SimulationOptions options, bool playing);
+  static Result<std::unique_ptr<Player>> start(SceneDef scene, SimulationOptions options, bool playing,
+                                               Drive drive = Drive::thread);
   ~Player();
+
+  // Of Drive::caller: commands, and a step and a picture where they are due; when to come again. Nothing
+  // waits in between, and a command waits for the step that it finds.
+  Clock::time_point turn();
 
   // From any thread. Of commands that replace each other the last one counts. Refused: too many wait.
   Result<void> push(const Command& command);
   ShownPtr latest() const;
   bool over() const;  // stopped, or ended by itself where memory ran out
-  // One that is newer, with values where fields are wanted; the latest after `timeout`.
+  // One that is newer, with values where fields are wanted; the latest after `timeout`, or at once where the
+  // caller drives.
   ShownPtr wait(std::uint64_t after, bool fields, std::chrono::milliseconds timeout);
   // Ends the thread, stopping a step that works; says what could not be ended in good order.
   Result<void> stop();
@@ -87,15 +97,22 @@ class Player {
   const Simulation& simulation() const { return *simulation_; }
 
  private:
-  using Clock = std::chrono::steady_clock;
   explicit Player(bool playing) : playing_(playing) {}
+  // Whether anybody looks on, and at fields.
+  struct Asked {
+    bool watched = false, fields = false;
+  };
+  Asked asked(Clock::time_point now) const;                             // under the mutex
+  Clock::time_point due(Clock::time_point now, const Asked& by) const;  // likewise
   void run();
   void live();  // until it is over
+  void act(const Asked& by);
+  void end_without_memory();
   bool work();  // commands; false: it is over
   void obey(const Command& command);
   void make_step();
   // False: its turn has not come.
-  bool publish(bool watched, bool fields, bool stepped);
+  bool publish(const Asked& by, bool stepped);
   bool lacks(bool fields) const;  // what is shown, under the mutex
   double period() const;
   bool moves() const;

@@ -70,6 +70,7 @@ class Simulation {
   const std::vector<std::vector<double>>& maps() const { return maps_; }
   // What building the scene has noticed.
   std::vector<std::string> notes() const;
+  bool records() const { return !options_.folder.empty(); }  // there is a folder for recordings
   bool has_fibers() const { return shape_->has_fibers(); }
   Index elements() const { return shown_.elements; }
   double step_length() const { return plan_.h; }

@@ -76,11 +76,11 @@ void BlockWriter::points(std::span<const Vec3> points) {
   }
 }
 
-std::string BlockWriter::packed() const {
-  uLongf size = compressBound(static_cast<uLong>(bytes_.size()));
+std::string packed(std::span<const std::uint8_t> bytes) {
+  uLongf size = compressBound(static_cast<uLong>(bytes.size()));
   std::vector<std::uint8_t> out(size);
   const int status =
-      compress2(out.data(), &size, bytes_.data(), static_cast<uLong>(bytes_.size()), Z_DEFAULT_COMPRESSION);
+      compress2(out.data(), &size, bytes.data(), static_cast<uLong>(bytes.size()), Z_DEFAULT_COMPRESSION);
   if (status != Z_OK) return {};
   return base64({out.data(), static_cast<std::size_t>(size)});
 }

@@ -11,6 +11,9 @@
 
 namespace isochor::page {
 
+// zlib stream in base64; empty when zlib failed (out of memory).
+std::string packed(std::span<const std::uint8_t> bytes);
+
 // Bytes of one block before compression.
 class BlockWriter {
  public:
@@ -21,8 +24,7 @@ class BlockWriter {
   // A count and the points as little-endian floats.
   void points(std::span<const Vec3> points);
 
-  // zlib stream in base64; empty when zlib failed (out of memory).
-  std::string packed() const;
+  std::string packed() const { return page::packed(bytes_); }
 
  private:
   void u32(std::uint32_t value);

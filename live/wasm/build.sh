@@ -17,5 +17,7 @@ cmake -S "$root" -B "$folder" -G Ninja \
   -DISOCHOR_LIVE_WASM=ON -DISOCHOR_NATIVE=OFF -DISOCHOR_WITH_TBB=OFF -DISOCHOR_WITH_VTU=OFF \
   -DISOCHOR_WITH_MUMPS=OFF -DISOCHOR_WITH_CHOLMOD=OFF -DISOCHOR_WITH_METIS=OFF \
   -DISOCHOR_APPS=OFF -DISOCHOR_TESTS=OFF -DISOCHOR_BENCHMARKS=OFF
+# Debian's packages for Node.js are where other builds of it do not look.
+export NODE_PATH="${NODE_PATH:-/usr/share/nodejs}"
 cmake --build "$folder" -j "${2:-$(nproc)}" --target isochor_live_engine isochor_steps
 ls -l "$folder"/isochor_live_engine.js "$folder"/isochor_live_engine.wasm

@@ -1,5 +1,5 @@
-// In the place of scenes/run/outputs.cpp: a page has no folder to record into, and does without the writers of
-// tables, frames and pages.
+// In the place of scenes/run/outputs.cpp: a page has no folder to record into, and does without the writers
+// of tables, frames and pages.
 #include "scenes/run/outputs.h"
 
 namespace isochor {

@@ -49,8 +49,7 @@ void describe(Visitor& io, MullinsSoftening& s) {
   const MullinsSoftening d;
   io.about("mullins",
            "Softer where it has been stretched before, see [Mullins softening](materials/mullins.md).");
-  io.number(Key("r", "", "how much softer at most: 1 - 1/r of the stress is left").above(1).must(),
-            s.r, d.r);
+  io.number(Key("r", "", "how much softer at most: 1 - 1/r of the stress is left").above(1).must(), s.r, d.r);
   io.number(Key("m", "Pa", "energy density below which softening is not full").least(0), s.m, d.m);
   io.number(Key("beta", "", "the same as a share of the largest energy density").least(0), s.beta, d.beta);
 }

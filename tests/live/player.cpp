@@ -136,3 +136,35 @@ TEST_CASE("rates are those of the last second") {
   // Where nothing comes any more, the rate falls.
   CHECK(tempo.per_s(now + std::chrono::seconds(4)) < 12);
 }
+
+TEST_CASE("in turns of the caller a player does what it does in a thread, and never waits") {
+  const Overrides moving = {"analysis.type=dynamic", "analysis.steps=10", "analysis.duration=0.2"};
+  auto threaded = start(false, moving);
+  auto made = Player::start(test::small_scene(moving), {}, false, Player::Drive::caller);
+  REQUIRE(made.ok());
+  Player& p = *made.value();
+  CHECK(p.latest()->step == 0);
+  // Nothing is due, and it is said for how long.
+  p.wait(0, false, milliseconds(0));
+  while (p.turn() <= Player::Clock::now()) {
+  }
+  for (int step = 1; step <= 3; ++step) {
+    REQUIRE(threaded->push(plain(Action::step)).ok());
+    REQUIRE(p.push(plain(Action::step)).ok());
+    const auto before = std::chrono::steady_clock::now();
+    CHECK(p.wait(p.latest()->number, false, std::chrono::seconds(60))->step == step - 1);
+    CHECK(std::chrono::steady_clock::now() - before < std::chrono::seconds(30));
+    while (p.latest()->step < step) p.turn();
+    const auto other = wait_for(*threaded, [&](const Shown& s) { return s.step == step; });
+    CHECK(p.latest()->hash == other->hash);
+  }
+  p.wait(0, true, milliseconds(0));
+  p.turn();
+  CHECK(p.wait(0, true, milliseconds(0))->values != nullptr);
+  REQUIRE(p.push(plain(Action::reset)).ok());
+  p.turn();
+  CHECK(p.latest()->step == 0);
+  CHECK(p.latest()->hash == start(false, moving)->latest()->hash);
+  REQUIRE(p.stop().ok());
+  CHECK(p.turn() == Player::Clock::time_point::max());
+}

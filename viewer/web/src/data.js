@@ -8,7 +8,7 @@ const FIELD_LEVELS = 4095;
 const AHEAD_BYTES = 100e6; // of frames unpacked before they are asked for
 
 /** Base64 of a zlib stream to its bytes. */
-async function inflate(base64) {
+export async function inflate(base64) {
   const text = atob(base64);
   const packed = new Uint8Array(text.length);
   for (let i = 0; i < packed.length; ++i) packed[i] = text.charCodeAt(i);

@@ -14,7 +14,7 @@ const partsThat = (state, look) => state.looks.flatMap((l, p) => (l === look ? [
 /** What is behind # of an address that shows the same. */
 export function linkOf(viewer) {
   const { state, stage, connection } = viewer;
-  const values = new URLSearchParams(connection ? { token: connection.token } : {});
+  const values = new URLSearchParams(connection?.token ? { token: connection.token } : {});
   values.set('field', state.field.name);
   if (!connection && state.frame >= 0) values.set('frame', state.frame);
   if (stage) {

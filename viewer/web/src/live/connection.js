@@ -37,6 +37,9 @@ export class Connection {
     this.pending = new Map();
   }
 
+  /** What is said where no answer comes. */
+  get silence() { return 'The server does not answer; has it ended? Trying again.'; }
+
   async ask(path, options = {}) {
     const answer = await fetch(path, {
       ...options, cache: 'no-store', headers: { 'X-Isochor-Token': this.token, 'X-Isochor-Viewer': this.viewer },

@@ -27,6 +27,7 @@ export class LiveControls extends DisplayPanel {
     this.speed = el('select', { 'aria-label': 'Speed, at most', title: 'Speed, at most', onchange: () => viewer.send({ do: 'speed', value: Number(this.speed.value) }) },
       ...SPEEDS.map(([v, text]) => el('option', { value: v, selected: v === 1 }, text)));
     this.recordButton = button('Record', 'Write the outputs of isochor run from here on', () => viewer.send({ do: viewer.frame?.info.recorded === null ? 'record' : 'stop_recording' }), 'record');
+    this.recordButton.hidden = !viewer.run.head.records;
     this.filmButton = button('Video', 'A film of the picture from here on (WebM)', () => viewer.film(), 'film');
     this.filmButton.hidden = !viewer.stage || videoType() === null;
     this.driven = [this.playButton, this.stepButton, this.resetButton, this.speed, this.recordButton];

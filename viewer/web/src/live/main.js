@@ -12,6 +12,7 @@ import { Stage } from '../stage.js';
 import { Connection } from './connection.js';
 import { LiveControls } from './controls.js';
 import { LiveData } from './data.js';
+import { Engine } from './engine.js';
 import { Hand } from './hand.js';
 import { ScrollPlots } from './scroll_plots.js';
 import { copyLink, readLink } from '../view_link.js';
@@ -250,7 +251,7 @@ async function look(viewer, connection) {
 async function open() {
   const app = document.getElementById('app');
   const options = readLink(window.location);
-  const connection = new Connection(options.token);
+  const connection = Engine.isCarried() ? new Engine() : new Connection(options.token);
   let viewer = null;
   window.addEventListener('pagehide', () => connection.leave());
   for (;;) {
@@ -276,7 +277,7 @@ async function open() {
         console.info(error); // the page says it as well
         viewer.lost = true;
         viewer.page.root.classList.add('lost');
-        viewer.said(error.status ? `${error.message}` : 'The server does not answer; has it ended? Trying again.', true);
+        viewer.said(error.status ? `${error.message}` : connection.silence, true);
       }
       await new Promise((done) => setTimeout(done, error.status === 410 ? 0 : AGAIN));
     }
