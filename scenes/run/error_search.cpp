@@ -55,6 +55,7 @@ class Search {
   std::string trial_folder() const;
   void conclude();
   std::string why_no_more() const;
+  std::string shape() const;
 
   const SceneDef& scene_;
   const ErrorSearchOptions& options_;
@@ -246,6 +247,17 @@ std::string Search::why_no_more() const {
   return text;
 }
 
+// What no comparison sees, where it may be as large as what was asked.
+std::string Search::shape() const {
+  const FlatFaces& faces = choices_.faces;
+  if (!(faces.deficit > 0.3 * options_.error)) return {};
+  return ". Not in this: the surface of \"" + choices_.faces_of +
+         "\" looks round and its flat faces turn by up to " + two_digits(faces.turn * 57.29577951308232) +
+         " degrees; if it is meant to be round, sizes are off by about " + percent(faces.deficit) +
+         ", answers by several times that, and refinement keeps it: take a mesh that follows the shape, or "
+         "curved Tet10";
+}
+
 void Search::conclude() {
   out_.seconds = elapsed();
   out_.accuracy.seconds = out_.seconds - out_.result.wall_s;
@@ -271,11 +283,12 @@ void Search::conclude() {
                                                  ", held by \"" + best.held_by + "\""
                                            : "unknown, since nothing could be compared with it";
   if (out_.end == SearchEnd::reached) {
-    out_.sentence = "within " + percent(options_.error) + " with " + describe(best.setting) + ": " + known;
+    out_.sentence =
+        "within " + percent(options_.error) + " with " + describe(best.setting) + ": " + known + shape();
   } else {
     const std::string more = why_no_more();
     out_.sentence = percent(options_.error) + " not reached; the best is " + describe(best.setting) + ": " +
-                    known + (more.empty() ? "" : ". No more: " + more);
+                    known + shape() + (more.empty() ? "" : ". No more: " + more);
   }
 }
 

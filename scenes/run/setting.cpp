@@ -67,6 +67,12 @@ Result<SettingChoices> setting_choices(const SceneDef& scene) {
     out.cells.push_back(mesh.cell_count());
     out.most_levels = std::min(out.most_levels, kMostRefined - body.refine);
     any = any || out.linear_tets.back();
+    // Edges of Tet10 may be curved.
+    const FlatFaces faces = mesh.cell_type == CellType::tet10 ? FlatFaces{} : flat_faces(mesh);
+    if (faces.deficit > out.faces.deficit) {
+      out.faces = faces;
+      out.faces_of = body.name;
+    }
   }
   if (any)
     out.elements = {Element::tet4, Element::tet4_edge_smoothed, Element::tet10};

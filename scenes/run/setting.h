@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/flat_faces.h"
 #include "scenes/scene.h"
 
 namespace isochor {
@@ -26,6 +27,8 @@ struct SettingChoices {
   std::vector<std::optional<Element>>
       elements;         // from the cheapest to the best; one without value: no choice
   int most_levels = 0;  // before a body cannot be refined further
+  FlatFaces faces;      // of the body whose flat faces cut off most
+  std::string faces_of;
 };
 // Reads the meshes. An error names the body that cannot be refined.
 Result<SettingChoices> setting_choices(const SceneDef& scene);
