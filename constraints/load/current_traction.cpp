@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "constraints/stencil/amount_row.h"
-#include "constraints/stencil/held_function.h"
 
 namespace isochor {
 

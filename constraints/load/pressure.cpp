@@ -4,7 +4,6 @@
 
 #include "constraints/stencil/amount_row.h"
 #include "constraints/stencil/face_pool.h"
-#include "constraints/stencil/held_function.h"
 #include "constraints/stencil/surface_nodes.h"
 #include "engine/base/fingerprint.h"
 #include "engine/scene/builder.h"
