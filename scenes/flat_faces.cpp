@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <vector>
 
 #include "engine/base/base.h"
@@ -11,7 +12,7 @@
 namespace isochor {
 
 FlatFaces flat_faces(const Mesh& mesh) {
-  constexpr double degree = 0.017453292519943295, flat = 1 * degree, sharp = 50 * degree;
+  constexpr double degree = 0.017453292519943295, flat = 1 * degree, sharp = 40 * degree;
   const TriangleSurface surface = boundary_of(mesh);
   const std::size_t faces = surface.triangles.size() / 3;
   std::vector<Vec3> normal(faces);  // times twice the area
@@ -32,12 +33,18 @@ FlatFaces flat_faces(const Mesh& mesh) {
     out.turn = std::max(out.turn, angle);
     for (const std::size_t f : of) turn[f] = std::max(turn[f], angle);
   }
-  double area = 0;
-  for (std::size_t f = 0; f < faces; ++f) {
-    area += norm(normal[f]);
-    out.deficit += norm(normal[f]) * turn[f] * turn[f] / 6;
+  // The turn that a tenth of the surface exceeds: inner walls count, though outer ones are larger.
+  std::vector<std::size_t> by_turn(faces);
+  std::iota(by_turn.begin(), by_turn.end(), std::size_t{0});
+  std::sort(by_turn.begin(), by_turn.end(), [&](std::size_t f, std::size_t g) { return turn[f] > turn[g]; });
+  double area = 0, above = 0;
+  for (const Vec3& n : normal) area += norm(n);
+  for (const std::size_t f : by_turn) {
+    above += norm(normal[f]);
+    if (above < 0.1 * area) continue;
+    out.deficit = turn[f] * turn[f] / 6;
+    break;
   }
-  if (area > 0) out.deficit /= area;
   return out;
 }
 
