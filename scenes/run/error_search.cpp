@@ -250,7 +250,8 @@ std::string Search::why_no_more() const {
 // What no comparison sees, where it may be as large as what was asked.
 std::string Search::shape() const {
   const FlatFaces& faces = choices_.faces;
-  if (!(faces.deficit > 0.3 * options_.error)) return {};
+  // Of stiffness it is several times as much.
+  if (!(faces.deficit > 0.1 * options_.error)) return {};
   return ". Not in this: the surface of \"" + choices_.faces_of +
          "\" looks round and its flat faces turn by up to " + two_digits(faces.turn * 57.29577951308232) +
          " degrees; if it is meant to be round, sizes are off by about " + percent(faces.deficit) +
