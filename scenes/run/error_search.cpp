@@ -139,6 +139,14 @@ std::optional<std::size_t> Search::choose() {
     if (!best || cost < least || (cost == kNever && least == kNever)) best = l;
     least = std::min(least, cost);
   }
+  // An element that has not been run on the mesh of the scene and costs less than that is looked at before:
+  // how good it is was a guess.
+  const auto next = best ? forecast_.cost(*best, ladders[*best].levels()) : std::nullopt;
+  for (std::size_t l = 0; next && l < ladders.size(); ++l) {
+    if (ladders[l].levels() > 0 || !closed_[l].empty() || !affordable(l)) continue;
+    const auto cost = forecast_.cost(l, 0);
+    if (cost && cost->work() < next->work()) return l;
+  }
   return best;
 }
 
