@@ -280,7 +280,13 @@ void SceneJudge::watch_energy(const BuiltScene& built, std::size_t b) {
   if (!one_density && !(scene_.analysis.options.gravity == Vec3{})) isolated_ = carried_by_supports_ = false;
   mass_.push_back(density * volume);
   center_.push_back(built.world.measures(built.bodies[b]).center_of_mass);
-  for (const MaterialDef& m : materials) energy_noise_ += 1e-9 * stiffness_of(m, scene_.folder) * volume;
+  const bool grows = std::any_of(scene_.growth.begin(), scene_.growth.end(),
+                                 [&](const GrowthDef& g) { return static_cast<std::size_t>(g.body) == b; });
+  for (const MaterialDef& m : materials) {
+    const double stored = stiffness_of(m, scene_.folder) * volume;
+    energy_noise_ += 1e-9 * stored;
+    if (grows) grown_energy_ += stored;
+  }
   if (scene_.analysis.type != AnalysisType::dynamics) return;
   // Positions are rounded where they are, and velocities are differences of positions.
   double far = 0;
@@ -477,8 +483,9 @@ std::optional<Finding> SceneJudge::balance(const BuiltScene& built) const {
   }
   // Forces inside may be far larger than what goes in and out; their rounding is left over.
   const double inside = energy_noise_ / length_;
-  if (length(sum) <= std::max(1e-6, 100 * scene_.analysis.options.force_tolerance) * scale + inside)
-    return {};
+  // Growth makes such forces without any load, and a tolerance is relative to all of them.
+  const double tolerance = std::max(1e-6, 100 * scene_.analysis.options.force_tolerance);
+  if (length(sum) <= tolerance * (scale + grown_energy_ / length_) + inside) return {};
   return Finding{"balance", "supports and loads add up to " + number(length(sum)) + " N, of forces of " +
                                 number(scale) + " N in all"};
 }

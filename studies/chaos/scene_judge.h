@@ -56,6 +56,7 @@ class SceneJudge {
   // Energy that may be there: nothing works on the scene but gravity.
   bool isolated_ = false;
   double start_energy_ = 0, most_gone_down_ = 0, energy_noise_ = 0;
+  double grown_energy_ = 0;  // that bodies which grow may hold [J]
   // Statics where supports alone carry what loads, whose resultant is known, put on the bodies.
   bool carried_by_supports_ = false;
   std::vector<double> mass_;  // of bodies [kg]
