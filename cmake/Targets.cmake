@@ -26,15 +26,6 @@ function(isochor_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# Parsing headers is most of what many files take. Builds that are made once (CI) do it once a target; a cache would not
-# find what was compiled with such a header in another folder.
-function(isochor_precompile target part header)
-  if(ISOCHOR_PRECOMPILE STREQUAL part OR ISOCHOR_PRECOMPILE STREQUAL "all")
-    target_precompile_headers(${target} PRIVATE "$<$<COMPILE_LANGUAGE:CXX>:${PROJECT_SOURCE_DIR}/${header}>")
-    set_target_properties(${target} PROPERTIES CXX_COMPILER_LAUNCHER "")
-  endif()
-endfunction()
-
 # What the public headers say, as a number (isochor/abi.h). Builds of the same sources may share the folder of it, so that
 # a compiler cache sees the same commands.
 set(ISOCHOR_GENERATED_INCLUDE ${PROJECT_BINARY_DIR}/include CACHE PATH "Folder of isochor/abi.h")
@@ -125,19 +116,16 @@ isochor_module(engine ${_engine})
 # Square roots set no errno, so that they are taken eight at a time.
 set_source_files_properties(${PROJECT_SOURCE_DIR}/engine/math/svd3.cpp PROPERTIES COMPILE_OPTIONS -fno-math-errno)
 target_link_libraries(isochor_engine PUBLIC isochor_mesh isochor_solvers PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>)
-isochor_precompile(isochor_engine all engine/system/system.h)
 
 isochor_sources(_materials materials)
 isochor_module(materials ${_materials})
 target_link_libraries(isochor_materials PUBLIC isochor_engine PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>)
-isochor_precompile(isochor_materials all engine/elements/material_model.h)
 
 isochor_sources(_constraints constraints/stencil constraints/active constraints/volume constraints/chamber constraints/layer
   constraints/line constraints/support constraints/load constraints/contact constraints/contact/friction
   constraints/contact/shape constraints/contact/rigid constraints/contact/surface)
 isochor_module(constraints ${_constraints})
 target_link_libraries(isochor_constraints PUBLIC isochor_engine PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen>)
-isochor_precompile(isochor_constraints all engine/scene/builder.h)
 
 isochor_sources(_integrators integrators)
 isochor_module(integrators ${_integrators})
