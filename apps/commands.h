@@ -36,7 +36,7 @@ struct RunArguments {
   std::optional<double> budget;
   bool quiet = false, json = false, explain = false, accuracy = false;
   bool resume = false, price = false;
-  std::string error;                 // "1%" or "0.01": search for it; empty: run as the scene says
+  std::optional<std::string> error;  // "1%" or "0.01": search for it
   std::optional<double> checkpoint;  // [s], in place of outputs.checkpoint_seconds
 };
 

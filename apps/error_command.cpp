@@ -70,7 +70,7 @@ void print_trial(const Trial& t) {
 }
 
 int run_to_error(const RunArguments& a, const SceneDef& scene) {
-  const auto error = parse_error_demand(a.error);
+  const auto error = parse_error_demand(*a.error);
   if (!error) return refuse("--" + error.error());
   const bool tables = !a.quiet && !a.json;
   ErrorSearchOptions options;

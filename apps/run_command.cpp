@@ -169,7 +169,7 @@ int run(const RunArguments& a) {
   if (a.checkpoint) scene.value().outputs.checkpoint_seconds = *a.checkpoint;
   stop_on_signals();
   if (a.price) return price(a, scene.value());
-  if (!a.error.empty()) return run_to_error(a, scene.value());
+  if (a.error) return run_to_error(a, scene.value());
   const bool tables = !a.quiet && !a.json;
   RunOptions options;
   options.folder = a.folder.empty() ? "out/" + scene.value().name : a.folder;

@@ -323,7 +323,7 @@ Result<MaterialPtr> make_material(const MaterialDef& def, const std::string& fol
   auto matrix = make_varied(def, folder);
   if (matrix && !def.prony.empty())
     matrix = with_prony_series(std::move(matrix).value(), def.prony, def.static_time);
-  if (matrix && def.mullins.r != 0) matrix = with_mullins_softening(std::move(matrix).value(), def.mullins);
+  if (matrix && def.mullins) matrix = with_mullins_softening(std::move(matrix).value(), *def.mullins);
   if (matrix && !def.fibers.empty()) {
     auto families = fibers_of(def, mesh);
     if (!families) return families.failure();

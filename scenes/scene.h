@@ -91,8 +91,8 @@ struct MaterialDef {
   MaterialLaw law = MaterialLaw::neo_hookean;
   ElasticConstants constants;  // of laws with constants of their own, only Poisson's ratio counts
   LawConstants own;
-  std::vector<PronyTerm> prony;  // beside it, none: an elastic material
-  MullinsSoftening mullins;      // of the law; r = 0: none
+  std::vector<PronyTerm> prony;             // beside it, none: an elastic material
+  std::optional<MullinsSoftening> mullins;  // of the law
   StaticTime static_time = StaticTime::long_term;
   std::vector<SceneFibers> fibers;
   CompressionPenalty compression_penalty;  // as it is made: none

@@ -151,9 +151,9 @@ void describe(Visitor& io, MaterialDef& m) {
       m.prony);
   io.word({"static_time", "", "what the time of a statics is to `prony`: everything has relaxed, or seconds"},
           m.static_time, d.static_time);
-  io.optional_object(
+  io.maybe_object(
       {"mullins", "", "[softening](materials/mullins.md) of an isochoric law by what it has borne"},
-      m.mullins, m.mullins.r != 0);
+      m.mullins);
   io.list({"fibers", "", "families of [fibers](materials/fibers.md)"}, m.fibers);
   io.optional_object({"compression_penalty", "", "against single crushed elements"}, m.compression_penalty,
                      m.compression_penalty.modulus != 0);

@@ -177,8 +177,9 @@ void draw_memory(const ChaosDraft& draft, const std::string& region, MaterialDef
     // Softening has a sequence of its own.
     ChaosRandom later = draft.random("softening " + std::to_string(draft.bodies.size()) + " " + region);
     if (later.chance(0.5))
-      m.mullins = {later.between(1.05, 4), later.chance(0.5) ? draft.young * later.decades(-3, 1) : 0,
-                   later.between(0.01, 1)};
+      m.mullins =
+          MullinsSoftening{later.between(1.05, 4), later.chance(0.5) ? draft.young * later.decades(-3, 1) : 0,
+                           later.between(0.01, 1)};
     return;
   }
   const int terms = random.whole(1, 3);

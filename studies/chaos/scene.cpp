@@ -58,7 +58,7 @@ void add_body_parts(const SceneDef& s, std::set<std::string>& parts) {
       parts.insert("law " + word(kLaws, m.law));
       if (!m.fibers.empty()) parts.insert("fibers");
       if (!m.prony.empty()) parts.insert("memory");
-      if (m.mullins.r != 0) parts.insert("Mullins softening");
+      if (m.mullins) parts.insert("Mullins softening");
       if (m.compression_penalty.modulus > 0) parts.insert("compression penalty");
       if (m.stiffness_field.given() || m.poisson_field.given()) parts.insert("fields of constants");
     }

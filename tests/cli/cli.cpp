@@ -161,6 +161,7 @@ TEST_CASE("a run finds what an error takes, and its end is in its code") {
     CHECK(refused.code == 2);
     CHECK_THAT(refused.err, Contains("--error = ") && Contains("above 0 %"));
   }
+  CHECK(shell.run("run block.json --error ''").code == 2);
   CHECK(shell.run("run block.json --error 1% --resume").code == 2);
   const Outcome nothing = shell.run("run block.json --error 1% --set probes=[]");
   CHECK(nothing.code == 2);

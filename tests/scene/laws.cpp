@@ -143,6 +143,11 @@ TEST_CASE("constants of laws are refused in scene files where they mean nothing 
              Contains("\"ecoflex\"") && Contains("ecoflex_00_30_marechal"));
   CHECK(error_of(R"({"law": "named", "name": "ecoflex_00_30_marechal", "poisson": 0.49})") == "(none)");
   CHECK(error_of(R"({"law": "isochoric_yeoh", "c": [1e4], "bulk": "inf"})") == "(none)");
+  for (const char* softening : {R"({})", R"({"r": 0})", R"({"m": 1})"}) {
+    CHECK_THAT(error_of(R"({"law": "isochoric_neo_hookean", "young": 1, "poisson": 0.4, "mullins": )" +
+                        std::string(softening) + "}"),
+               Contains("r = 0;"));
+  }
 }
 
 TEST_CASE("a run that stops where Gent's law has no value any more says so") {
