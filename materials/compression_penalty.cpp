@@ -6,6 +6,7 @@
 #include "engine/elements/material_model.h"
 #include "isochor/materials.h"
 #include "materials/energy_batch.h"
+#include "materials/wrapped_model.h"
 
 namespace isochor {
 
@@ -63,36 +64,26 @@ class PenalizedMaterial final : public Material {
   InvariantMaterial<PenaltyEnergy> penalty_;
 };
 
-class PenalizedModel final : public MaterialModel {
+class PenalizedModel final : public WrappedModel {
  public:
-  PenalizedModel(MaterialPtr base, PenaltyEnergy penalty)
-      : base_(std::move(base)),
-        name_(std::string(base_->name()).append(" with compression penalty")),
+  PenalizedModel(MaterialPtr of, PenaltyEnergy penalty)
+      : WrappedModel(std::move(of)),
+        name_(std::string(base().name()).append(" with compression penalty")),
         penalty_(penalty) {}
   std::string_view name() const override { return name_; }
   std::shared_ptr<const Material> distortional() const override {
-    return std::make_shared<PenalizedMaterial>(name_, base_->distortional(), penalty_);
+    return std::make_shared<PenalizedMaterial>(name_, base().distortional(), penalty_);
   }
   Result<std::shared_ptr<const Material>> complete() const override {
-    auto complete = base_->complete();
+    auto complete = base().complete();
     if (!complete) return complete;
     return std::shared_ptr<const Material>(
         std::make_shared<PenalizedMaterial>(name_, complete.value(), penalty_));
   }
-  double shear_modulus() const override { return base_->shear_modulus(); }
-  double inverse_bulk() const override { return base_->inverse_bulk(); }
-  double poisson() const override { return with_penalty(base_->poisson(), shear_modulus()); }
+  double poisson() const override { return with_penalty(base().poisson(), shear_modulus()); }
   double young() const override { return 2 * shear_modulus() * (1 + poisson()); }
-  bool defined_inverted() const override { return base_->defined_inverted(); }
-  VolumeStrain volume_strain() const override { return base_->volume_strain(); }
-  std::vector<std::string> warnings() const override { return base_->warnings(); }
-  const MaterialMemory* memory() const override { return base_->memory(); }
-  bool has_separate_volume() const override { return base_->has_separate_volume(); }
-  std::size_t field_cells() const override { return base_->field_cells(); }
-  double stiffness_factor(Index cell) const override { return base_->stiffness_factor(cell); }
-  double inverse_bulk_of(Index cell) const override { return base_->inverse_bulk_of(cell); }
   double poisson_of(Index cell) const override {
-    return with_penalty(base_->poisson_of(cell), shear_modulus() * stiffness_factor(cell));
+    return with_penalty(base().poisson_of(cell), shear_modulus() * stiffness_factor(cell));
   }
 
  private:
@@ -102,7 +93,6 @@ class PenalizedModel final : public MaterialModel {
     const double lambda = 2 * mu * nu / (1 - 2 * nu) + penalty_.modulus;
     return lambda / (2 * (lambda + mu));
   }
-  MaterialPtr base_;
   std::string name_;
   PenaltyEnergy penalty_;
 };

@@ -13,6 +13,7 @@
 #include "engine/base/text.h"
 #include "engine/elements/material_model.h"
 #include "isochor/materials.h"
+#include "materials/wrapped_model.h"
 
 namespace isochor {
 
@@ -266,42 +267,30 @@ class FiberMaterial final : public Material {
   std::vector<Family> families_;
 };
 
-class FiberModel final : public MaterialModel {
+class FiberModel final : public WrappedModel {
  public:
   FiberModel(MaterialPtr matrix, std::vector<Family> families, std::size_t cells)
-      : matrix_(std::move(matrix)),
-        name_(std::string(matrix_->name()).append(" with fibers")),
+      : WrappedModel(std::move(matrix)),
+        name_(std::string(base().name()).append(" with fibers")),
         families_(std::move(families)),
         cells_(cells) {}
   std::string_view name() const override { return name_; }
   std::shared_ptr<const Material> distortional() const override {
-    return std::make_shared<FiberMaterial>(name_, matrix_->distortional(), families_);
+    return std::make_shared<FiberMaterial>(name_, base().distortional(), families_);
   }
   Result<std::shared_ptr<const Material>> complete() const override {
-    auto complete = matrix_->complete();
+    auto complete = base().complete();
     if (!complete) return complete;
     return std::shared_ptr<const Material>(
         std::make_shared<FiberMaterial>(name_, complete.value(), families_));
   }
-  double shear_modulus() const override { return matrix_->shear_modulus(); }
-  double inverse_bulk() const override { return matrix_->inverse_bulk(); }
-  double poisson() const override { return matrix_->poisson(); }
-  double young() const override { return matrix_->young(); }
   bool defined_inverted() const override {
-    return matrix_->defined_inverted() &&
+    return base().defined_inverted() &&
            std::none_of(families_.begin(), families_.end(), [](const Family& f) { return f.isochoric; });
   }
-  VolumeStrain volume_strain() const override { return matrix_->volume_strain(); }
-  std::vector<std::string> warnings() const override { return matrix_->warnings(); }
-  const MaterialMemory* memory() const override { return matrix_->memory(); }
-  bool has_separate_volume() const override { return matrix_->has_separate_volume(); }
-  std::size_t field_cells() const override { return cells_ > 0 ? cells_ : matrix_->field_cells(); }
-  double stiffness_factor(Index cell) const override { return matrix_->stiffness_factor(cell); }
-  double inverse_bulk_of(Index cell) const override { return matrix_->inverse_bulk_of(cell); }
-  double poisson_of(Index cell) const override { return matrix_->poisson_of(cell); }
+  std::size_t field_cells() const override { return cells_ > 0 ? cells_ : base().field_cells(); }
 
  private:
-  MaterialPtr matrix_;
   std::string name_;
   std::vector<Family> families_;
   std::size_t cells_;  // of direction fields; 0: none

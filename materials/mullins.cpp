@@ -15,6 +15,7 @@
 #include "engine/base/text.h"
 #include "engine/elements/material_model.h"
 #include "materials/isochoric_base.h"
+#include "materials/wrapped_model.h"
 
 namespace isochor {
 
@@ -121,34 +122,25 @@ class SoftenedMaterial final : public Material {
   double at_rest_ = 0;  // what the energy of the law is where nothing is stretched [Pa]
 };
 
-class SoftenedModel final : public MaterialModel {
+class SoftenedModel final : public WrappedModel {
  public:
-  SoftenedModel(MaterialPtr base, const MullinsSoftening& constants)
-      : base_(std::move(base)),
-        name_(std::string(base_->name()).append(" with Mullins softening")),
+  SoftenedModel(MaterialPtr of, const MullinsSoftening& constants)
+      : WrappedModel(std::move(of)),
+        name_(std::string(base().name()).append(" with Mullins softening")),
         constants_(constants) {}
   std::string_view name() const override { return name_; }
   std::shared_ptr<const Material> distortional() const override {
-    const auto part = base_->distortional();
+    const auto part = base().distortional();
     return std::make_shared<SoftenedMaterial>(part, part, constants_);
   }
   Result<std::shared_ptr<const Material>> complete() const override {
-    auto all = base_->complete();
+    auto all = base().complete();
     if (!all) return all;
     return std::shared_ptr<const Material>(
-        std::make_shared<SoftenedMaterial>(all.value(), base_->distortional(), constants_));
+        std::make_shared<SoftenedMaterial>(all.value(), base().distortional(), constants_));
   }
-  double shear_modulus() const override { return base_->shear_modulus(); }
-  double inverse_bulk() const override { return base_->inverse_bulk(); }
-  double poisson() const override { return base_->poisson(); }
-  double young() const override { return base_->young(); }
-  bool defined_inverted() const override { return base_->defined_inverted(); }
-  VolumeStrain volume_strain() const override { return base_->volume_strain(); }
-  std::vector<std::string> warnings() const override { return base_->warnings(); }
-  bool has_separate_volume() const override { return base_->has_separate_volume(); }
 
  private:
-  MaterialPtr base_;
   std::string name_;
   MullinsSoftening constants_;
 };

@@ -5,6 +5,7 @@
 #include "engine/base/text.h"
 #include "engine/elements/material_model.h"
 #include "isochor/materials.h"
+#include "materials/wrapped_model.h"
 
 namespace isochor {
 
@@ -63,44 +64,33 @@ class ScaledMaterial final : public Material {
   std::vector<double> factor_;
 };
 
-class ScaledModel final : public MaterialModel {
+class ScaledModel final : public WrappedModel {
  public:
-  ScaledModel(MaterialPtr base, std::vector<double> factor)
-      : base_(std::move(base)), factor_(std::move(factor)) {
-    if (!base_->memory()) return;
-    memory_ = *base_->memory();
+  ScaledModel(MaterialPtr of, std::vector<double> factor)
+      : WrappedModel(std::move(of)), factor_(std::move(factor)) {
+    if (!base().memory()) return;
+    memory_ = *base().memory();
     for (auto& branch : memory_.branches)
       branch.spring = std::make_shared<ScaledMaterial>(std::move(branch.spring), factor_);
   }
-  std::string_view name() const override { return base_->name(); }
   std::shared_ptr<const Material> distortional() const override {
-    return std::make_shared<ScaledMaterial>(base_->distortional(), factor_);
+    return std::make_shared<ScaledMaterial>(base().distortional(), factor_);
   }
   Result<std::shared_ptr<const Material>> complete() const override {
-    auto complete = base_->complete();
+    auto complete = base().complete();
     if (!complete) return complete;
     return std::shared_ptr<const Material>(std::make_shared<ScaledMaterial>(complete.value(), factor_));
   }
-  double shear_modulus() const override { return base_->shear_modulus(); }
-  double inverse_bulk() const override { return base_->inverse_bulk(); }
-  double poisson() const override { return base_->poisson(); }
-  double young() const override { return base_->young(); }
-  bool defined_inverted() const override { return base_->defined_inverted(); }
-  VolumeStrain volume_strain() const override { return base_->volume_strain(); }
-  std::vector<std::string> warnings() const override { return base_->warnings(); }
-  bool has_separate_volume() const override { return base_->has_separate_volume(); }
-  const MaterialMemory* memory() const override { return base_->memory() ? &memory_ : nullptr; }
+  const MaterialMemory* memory() const override { return base().memory() ? &memory_ : nullptr; }
   std::size_t field_cells() const override { return factor_.size(); }
   double stiffness_factor(Index cell) const override {
-    return base_->stiffness_factor(cell) * factor_[at(cell)];
+    return base().stiffness_factor(cell) * factor_[at(cell)];
   }
   double inverse_bulk_of(Index cell) const override {
-    return base_->inverse_bulk_of(cell) / factor_[at(cell)];
+    return base().inverse_bulk_of(cell) / factor_[at(cell)];
   }
-  double poisson_of(Index cell) const override { return base_->poisson_of(cell); }
 
  private:
-  MaterialPtr base_;
   std::vector<double> factor_;
   MaterialMemory memory_;
 };

@@ -10,6 +10,7 @@
 #include "engine/math/lane_functions.h"
 #include "materials/isochoric_base.h"
 #include "materials/stretch_lanes.h"
+#include "materials/wrapped_model.h"
 
 namespace isochor {
 
@@ -93,42 +94,34 @@ class RemainderMaterial final : public Material {
   double share_;
 };
 
-class PronyModel final : public MaterialModel {
+class PronyModel final : public WrappedModel {
  public:
-  PronyModel(MaterialPtr base, const std::vector<PronyTerm>& terms, StaticTime statics)
-      : base_(std::move(base)), name_(std::string(base_->name()).append(" with memory")) {
+  PronyModel(MaterialPtr of, const std::vector<PronyTerm>& terms, StaticTime statics)
+      : WrappedModel(std::move(of)), name_(std::string(base().name()).append(" with memory")) {
     memory_.in_statics = statics == StaticTime::seconds;
     for (const PronyTerm& term : terms) {
       share_ += term.ratio;
       memory_.branches.push_back(
           {std::make_shared<StretchLanesMaterial<LogarithmicSpring>>(
-               "logarithmic spring", LogarithmicSpring{term.ratio * base_->shear_modulus()}),
+               "logarithmic spring", LogarithmicSpring{term.ratio * base().shear_modulus()}),
            term.time});
     }
   }
   std::string_view name() const override { return name_; }
   std::shared_ptr<const Material> distortional() const override {
-    const auto all = base_->distortional();
+    const auto all = base().distortional();
     return std::make_shared<RemainderMaterial>(all, all, share_);
   }
   Result<std::shared_ptr<const Material>> complete() const override {
-    auto all = base_->complete();
+    auto all = base().complete();
     if (!all) return all;
     return std::shared_ptr<const Material>(
-        std::make_shared<RemainderMaterial>(all.value(), base_->distortional(), share_));
+        std::make_shared<RemainderMaterial>(all.value(), base().distortional(), share_));
   }
-  double shear_modulus() const override { return base_->shear_modulus(); }
-  double inverse_bulk() const override { return base_->inverse_bulk(); }
-  double poisson() const override { return base_->poisson(); }
-  double young() const override { return base_->young(); }
   bool defined_inverted() const override { return false; }
-  VolumeStrain volume_strain() const override { return base_->volume_strain(); }
-  std::vector<std::string> warnings() const override { return base_->warnings(); }
-  bool has_separate_volume() const override { return base_->has_separate_volume(); }
   const MaterialMemory* memory() const override { return &memory_; }
 
  private:
-  MaterialPtr base_;
   std::string name_;
   double share_ = 0;
   MaterialMemory memory_;
