@@ -113,4 +113,15 @@ struct Gradients {
   double of(std::size_t output, std::size_t parameter) const { return by[output][parameter].front(); }
 };
 
+// Where an error of discretization comes from: what World::error_origins() finds.
+struct ErrorOrigin {
+  // Parts of one, by number of the body and cell of World::mesh(); empty for bodies that are not there. All
+  // zero where nothing is in error: a body at rest, or strained by the same everywhere.
+  std::vector<std::vector<double>> cells;
+  // False: the parts are those of the error of the strain, whatever it does to the output, for the reason
+  // that the note gives; empty where no output was asked for.
+  bool by_output = false;
+  std::string note;
+};
+
 }  // namespace isochor

@@ -75,7 +75,7 @@ class Bisections : public Cuts {
   std::vector<Index> of_cell_;
   std::vector<std::uint8_t> marked_;
   std::unordered_map<std::uint64_t, Index> number_;
-  mutable std::map<std::vector<std::uint8_t>, Template> templates_;
+  mutable std::map<std::uint32_t, Template> templates_;  // by the edges that are cut
 };
 
 std::uint64_t packed(const std::array<Index, 2>& e) {
@@ -155,7 +155,9 @@ std::vector<std::uint8_t> Bisections::cut_edges(const Index* corner, std::span<c
 
 const Template& Bisections::of(const Index* cell) const {
   const auto cut = cut_edges(cell, kTetEdges);
-  const auto [it, fresh] = templates_.try_emplace(cut);
+  std::uint32_t key = 1;
+  for (const std::uint8_t e : cut) key = 8 * key + e;
+  const auto [it, fresh] = templates_.try_emplace(key);
   if (fresh) it->second = tet_template(mesh_.cell_type == CellType::tet10, bisected<4>(kTetEdges, cut));
   return it->second;
 }
