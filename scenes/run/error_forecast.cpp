@@ -69,9 +69,10 @@ std::optional<Evidence> ErrorForecast::evidence(std::size_t l) const {
   const std::size_t level = runs.size() - 1;
   std::optional<Evidence> best;
   if (level >= 2)
-    best = from_three_meshes(runs[level - 2], runs[level - 1], runs[level]);
+    best = (of_all(l) ? from_three_meshes : from_three_local_meshes)(runs[level - 2], runs[level - 1],
+                                                                     runs[level]);
   else if (level == 1)
-    best = from_two_meshes(runs[0], runs[1]);
+    best = (of_all(l) ? from_two_meshes : from_two_local_meshes)(runs[0], runs[1]);
   for (std::size_t worse = l; of_all(l) && worse-- > 0;) {
     const ErrorLadder& other = ladders[worse];
     if (other.answers.size() <= level) continue;
@@ -101,7 +102,8 @@ std::optional<ErrorPlan> ErrorForecast::plan(std::size_t l, double wanted, int m
     if (level == 0 && l > 0) expected = kElementSafety * error(l - 1);
     if (level > 0) {
       const double ratio = of_all(l) ? kOrderTwo : kLocal;
-      expected = level == 1 ? (1 - 1 / ratio) * left : 1.25 * left / ratio;
+      const double safety = of_all(l) ? 1 : kLocalSafety;
+      expected = level == 1 ? safety * (1 - 1 / ratio) * left : 1.25 * left / ratio;
       left /= ratio;
     }
     if (expected <= wanted) return plan;

@@ -164,6 +164,17 @@ void add_places(const std::vector<AnswerOrigin>& origins, std::vector<AccuracyEn
   }
 }
 
+std::vector<double> largest_shares(const std::vector<AnswerOrigin>& origins, std::size_t body) {
+  std::vector<double> out;
+  for (const AnswerOrigin& origin : origins) {
+    if (body >= origin.cells.size()) continue;
+    const std::vector<double>& cells = origin.cells[body];
+    out.resize(cells.size());
+    for (std::size_t c = 0; c < cells.size(); ++c) out[c] = std::max(out[c], cells[c]);
+  }
+  return out;
+}
+
 std::vector<std::vector<Index>> cells_to_refine(const std::vector<AnswerOrigin>& origins, double most) {
   std::vector<std::vector<Index>> out;
   for (const AnswerOrigin& origin : origins) {

@@ -15,6 +15,9 @@ namespace isochor {
 std::vector<AnswerOrigin> origins_of_answers(const SceneDef& scene, BuiltScene& built,
                                              const RunResult& result);
 
+// What the cells of a body have in the error of any answer at most; empty without origins.
+std::vector<double> largest_shares(const std::vector<AnswerOrigin>& origins, std::size_t body);
+
 // The fewest cells that hold the share `most` of the error of every answer, each body's in ascending order
 // (Doerfler 1996).
 std::vector<std::vector<Index>> cells_to_refine(const std::vector<AnswerOrigin>& origins, double most);

@@ -36,7 +36,9 @@ class Run {
         built_(built),
         result_(result),
         start_(start),
-        recorder_(scene, built) {}
+        recorder_(scene, built) {
+    result_.wants_origins = options_.origins;
+  }
 
   void describe();
   // Takes over where an earlier run was.

@@ -107,6 +107,7 @@ struct RunResult {
   std::vector<std::string> probes, cavities, supports;  // names, in the order of the records' lists
   std::vector<MetricValue> metrics;
   std::vector<std::string> warnings;
+  bool wants_origins = false;
   std::vector<AnswerOrigin> origins;  // of a run that converged, where they were asked for
 };
 

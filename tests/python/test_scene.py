@@ -289,7 +289,7 @@ def test_solve_to_delivers_an_error_or_says_why_not(tmp_path):
 def test_errors_without_a_meaning_are_refused(error):
     with pytest.raises(iso.Error) as caught:
         small().solve_to(error)
-    sentence(caught.value)
+    sentence(caught)
 
 
 def test_a_callback_that_raises_stops_a_search():
