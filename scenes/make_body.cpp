@@ -52,6 +52,8 @@ Result<void> name_places(const SceneBody& body, const std::string& folder, Mesh&
   return add_all("node_sets", body.node_sets, add_node_set);
 }
 
+constexpr int kMostLevels = 12;  // of the key levels
+
 Error not_for_lattices(const std::string& what) {
   return Error{what +
                ", but the mesh is a lattice, whose cubes fit its surface better when they are made smaller; "
@@ -156,6 +158,10 @@ Result<void> refine(const SceneBody& body, const std::string& folder, Mesh& mesh
       return Error{who +
                    " says nowhere; give box, sphere, surfaces, regions or cells, or use refine for all"};
     if (lattice) return not_for_lattices(who + " is given");
+    if (where.levels < 1 || where.levels > kMostLevels) {
+      return Error{who + ".levels = " + std::to_string(where.levels) + "; give a number from 1 to " +
+                   std::to_string(kMostLevels)};
+    }
     for (int level = 0; level < where.levels; ++level) {
       const auto cells = cells_of(where, mesh, folder);
       if (!cells) return Error{who + "." + cells.error()};

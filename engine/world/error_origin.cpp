@@ -20,10 +20,8 @@ using Gradient = Eigen::Matrix<double, 9, 1>;
 // points.
 void add_strain_errors(const BodyData& body, const RegionData& region, const SolidPool& pool,
                        std::span<const Vec3> x, std::span<const Vec3> rest, std::vector<double>& error,
-                       double& strain) {
+                       double& size) {
   const ReferenceElement& element = *body.reference;
-  Gradient unit;
-  unit << 1, 0, 0, 0, 1, 0, 0, 0, 1;
   const auto points = at(pool.data().points), nodes = static_cast<std::size_t>(element.nodes);
   const auto gradient = [&](Index s, std::size_t q) {
     Gradient F;
@@ -48,7 +46,7 @@ void add_strain_errors(const BodyData& body, const RegionData& region, const Sol
     double sum = 0;
     for (std::size_t q = 0; q < points; ++q) {
       const Gradient F = gradient(s, q);
-      strain += weight(s, q) * (F - unit).squaredNorm();
+      size += weight(s, q) * F.squaredNorm();
       Gradient mean = Gradient::Zero();
       for (std::size_t a = 0; a < nodes; ++a) {
         const Gradient& at_node = fitted[at(of_cell[a] - body.first_node)];
@@ -61,22 +59,22 @@ void add_strain_errors(const BodyData& body, const RegionData& region, const Sol
   }
 }
 
-// Errors below this part of what the body is strained by are rounding.
-constexpr double kRounding = 1e-10;
+// Errors below this part of the deformation gradient are rounding.
+constexpr double kRounding = 1e-12;
 
 std::vector<double> strain_errors(const BodyData& body, std::span<const Vec3> x, std::span<const Vec3> rest) {
   std::vector<double> error(at(body.mesh.cell_count()));
-  double strain = 0;
+  double size = 0;
   for (const RegionData& region : body.regions) {
     auto data = solid_data(*body.reference, rest, body.global_cells, region.cells, VolumeFunctions::none);
     if (!data) continue;
     const SolidPool pool("", std::make_shared<const SolidData>(std::move(data).value()), nullptr,
                          VolumeStrain::linear);
-    add_strain_errors(body, region, pool, x, rest, error, strain);
+    add_strain_errors(body, region, pool, x, rest, error, size);
   }
   double sum = 0;
   for (const double e : error) sum += e * e;
-  if (!(sum > kRounding * kRounding * strain)) std::fill(error.begin(), error.end(), 0.0);
+  if (!(sum > kRounding * kRounding * size)) std::fill(error.begin(), error.end(), 0.0);
   return error;
 }
 

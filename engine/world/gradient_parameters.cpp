@@ -7,6 +7,7 @@
 
 #include "engine/base/text.h"
 #include "engine/scene/free_motions.h"
+#include "engine/step/time_scheme.h"
 #include "engine/world/gradient_parts.h"
 
 namespace isochor {
@@ -261,10 +262,12 @@ Result<Equations> World::Impl::Equilibrium::change_by_density(const Parameter& p
   auto regions = w.said.builder.regions(
       p.body, p.region.empty() ? std::span<const std::string>() : std::span(&p.region, 1), "gradients");
   if (!regions) return regions.failure();
+  // As gravity acts (gravity_mass()).
+  const bool lumped = w.options.scheme->has_inertia() && !w.options.consistent_mass;
   std::vector<double> volume(w.state.x.size(), 0);
   for (const std::size_t r : regions.value()) {
-    add_nodal_volume(*body.reference, w.system().parts().rest, body.global_cells, body.regions[r].cells, 1,
-                     volume);
+    (lumped ? add_lumped_mass : add_nodal_volume)(*body.reference, w.system().parts().rest, body.global_cells,
+                                                  body.regions[r].cells, 1, volume);
   }
   const Vec3 g = w.data->gravity(w.state.t);
   Equations change(w.system(), gauges.size());

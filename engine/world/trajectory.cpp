@@ -92,8 +92,8 @@ class World::Impl::Trajectory {
   Result<void> check();
   Result<void> go();
   Result<Gradients> gradients();
-  // To where it ended, or, where it did not, to where it began.
-  void leave();
+  // To the end of the way, or back to where it began.
+  void leave(bool at_end);
 
  private:
   // An increment that was made, looked at where it was evaluated.
@@ -227,7 +227,7 @@ Result<void> World::Impl::Trajectory::check_parameters() const {
 // Whether forces depend on where an increment began otherwise than by inertia: damping does.
 Result<void> World::Impl::Trajectory::looks_back() {
   if (!w_.options.scheme->has_inertia()) return {};
-  Increment first = stand_in(1);
+  Increment first = stand_in(part_first_ + 1);
   std::vector<Vec3> before(first.inertia.increment.before.begin(), first.inertia.increment.before.end());
   Equilibrium here(w_, &first.inertia);
   const auto force = [&] {
@@ -337,8 +337,8 @@ World::Impl::Trajectory::Increment World::Impl::Trajectory::stand_in(Index n) {
   return out;
 }
 
-void World::Impl::Trajectory::leave() {
-  const auto& to = end_.empty() ? start_ : end_;
+void World::Impl::Trajectory::leave(bool at_end) {
+  const auto& to = at_end ? end_ : start_;
   if (!to.empty()) (void)world_.load(to);
 }
 
@@ -432,6 +432,18 @@ Result<void> World::Impl::Trajectory::gather(Equilibrium& eq, std::size_t j, con
     }
   }
   return {};
+}
+
+void World::Impl::Trajectory::look_for_edges(Index n, Gradients& out) const {
+  if (!w_.system().has_bounds()) return;
+  auto found = w_.irregular();
+  if (found.note.empty()) return;
+  if (out.regular) out.note = "step " + std::to_string(n) + ": " + found.note;
+  out.regular = false;
+  for (std::string& effect : found.effects) {
+    if (std::find(out.undecided.begin(), out.undecided.end(), effect) == out.undecided.end())
+      out.undecided.push_back(std::move(effect));
+  }
 }
 
 // --- The two ways
@@ -562,7 +574,7 @@ Result<Gradients> World::trajectory_gradients(const TrajectoryQuery& query) try 
   if (auto r = way.check(); !r) return r.failure();
   auto gone = way.go();
   auto out = gone ? way.gradients() : Result<Gradients>(gone.failure());
-  way.leave();
+  way.leave(out.ok());
   return out;
 } catch (const std::bad_alloc&) {
   impl_->methods.drop();

@@ -374,6 +374,10 @@ void Search::conclude() {
 
 void Search::run() {
   while (!reached()) {
+    if (const auto left = time_left(); left && *left <= 0) {
+      out_of_time_ = true;
+      break;
+    }
     const auto next = choose();
     if (!next || (options_.run.stop && options_.run.stop())) break;
     if (!try_next(*next)) break;
@@ -383,7 +387,12 @@ void Search::run() {
   const std::string left = trial_folder();
   if (!out_.best && fs::exists(fs::path(left) / "summary.json", code)) (void)publish(scene_);
   if (!left.empty()) fs::remove_all(left, code);
-  if (!out_.trials.empty()) conclude();
+  if (!out_.trials.empty()) {
+    conclude();
+  } else if (out_of_time_) {
+    out_.end = SearchEnd::budget;
+    out_.sentence = "the budget of " + number(*options_.run.budget) + " s was used up before a run began";
+  }
 }
 
 }  // namespace

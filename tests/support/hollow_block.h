@@ -32,7 +32,8 @@ struct Kind {
   isochor::Element element = isochor::Element::tet4;
   isochor::VolumeSpace space = isochor::VolumeSpace::node;
   isochor::CavityControl control = isochor::CavityControl::pressure;
-  double guard = 0;  // stiffness of an element guard that acts everywhere; 0: as it is by default
+  double guard = 0;    // stiffness of an element guard that acts everywhere; 0: as it is by default
+  bool pulled = true;  // by the cable
 };
 
 struct Block {
@@ -152,9 +153,11 @@ inline Block build_block(const Knobs& knobs, const Kind& kind,
   cavity.control = kind.control;
   cavity.amount = isochor::Curve::constant(knobs.cavity);
   b.cavity = value(b.world.add(isochor::cavity(cavity)));
-  isochor::CableDef cable = cable_of(knobs, kind);
-  cable.body = b.body;
-  b.cable = value(b.world.add(isochor::cable(cable)));
+  if (kind.pulled) {
+    isochor::CableDef cable = cable_of(knobs, kind);
+    cable.body = b.body;
+    b.cable = value(b.world.add(isochor::cable(cable)));
+  }
   value(b.world.add_force_at(b.body, kPushed + knobs.shape * shape_motion(kPushed), knobs.push * kPush));
   if (knobs.velocity != 0) {
     std::vector<Vec3> velocities = motion;

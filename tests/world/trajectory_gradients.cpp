@@ -49,7 +49,7 @@ std::vector<TimedOutput> outputs_of(const Block& block, bool gauges) {
       {{{0, Output::node(block.body, tip, {1, 1, 1})}, {4, Output::node(block.body, next, {0, 0, 1})}}}};
   if (!gauges) return out;
   out.push_back({{{3, Output::gauge(block.cavity, "volume")}}});
-  out.push_back({{{4, Output::gauge(block.cable, "tension")}}});
+  if (block.kind.pulled) out.push_back({{{4, Output::gauge(block.cable, "tension")}}});
   return out;
 }
 
@@ -66,7 +66,6 @@ std::vector<Asked> parameters_of(const Block& block, bool statics) {
   std::vector<Asked> out{
       {"amount of a support", Parameter::amount_of(block.clamp), &Knobs::clamp},
       {"amount of a cavity", Parameter::amount_of(block.cavity), &Knobs::cavity},
-      {"amount of a cable", Parameter::amount_of(block.cable), &Knobs::cable},
       {"force", Parameter::force_at(block.body, kPushed, kPush), &Knobs::push},
       {"gravity", Parameter::gravity({0, 0, 1}), &Knobs::gravity},
       {"density", Parameter::density(block.body), &Knobs::density},
@@ -77,15 +76,18 @@ std::vector<Asked> parameters_of(const Block& block, bool statics) {
        Parameter::material(block.body, "", k.poisson, [k](double v) { return material_of(k.young, v, k); }),
        &Knobs::poisson},
       {"stiffness", Parameter::stiffness(block.body), &Knobs::stiffness},
-      {"stiffness of the cable",
-       Parameter::constant_of(block.cable, k.spring,
-                              [k, kind](double v) {
-                                Knobs other = k;
-                                other.spring = v;
-                                return isochor::cable(cable_of(other, kind));
-                              }),
-       &Knobs::spring},
       {"shape", Parameter::shape(block.body, motion), &Knobs::shape}};
+  if (block.kind.pulled) {
+    out.push_back({"amount of a cable", Parameter::amount_of(block.cable), &Knobs::cable});
+    out.push_back({"stiffness of the cable",
+                   Parameter::constant_of(block.cable, k.spring,
+                                          [k, kind](double v) {
+                                            Knobs other = k;
+                                            other.spring = v;
+                                            return isochor::cable(cable_of(other, kind));
+                                          }),
+                   &Knobs::spring});
+  }
   if (!statics)
     out.push_back({"velocity", Parameter::initial_velocity(block.body, motion), &Knobs::velocity});
   return out;
@@ -113,6 +115,8 @@ std::vector<double> difference(const Block& block, double Knobs::*knob, const Sc
   const bool ends = knob == &Knobs::poisson && at == 0.5;
   double h = 2e-3 * (at == 0 ? 0.1 : std::abs(at));
   if (knob == &Knobs::poisson && !ends) h = 2e-2 * (0.5 - at);
+  // Next to inertia in a short step rows are soft sooner.
+  if (ends) h = 1e-4;
   const std::vector<std::pair<int, double>> rule =
       ends ? std::vector<std::pair<int, double>>{{0, 137. / 60}, {-1, -5},     {-2, 5},
                                                  {-3, -10. / 3}, {-4, 5. / 4}, {-5, -1. / 5}}
@@ -184,7 +188,11 @@ TEST_CASE("every output by every parameter, with every scheme, is what differenc
     CAPTURE(std::string(scheme->name()));
     Knobs knobs = moving(0.49);
     if (!scheme->has_inertia() || scheme->name().starts_with("static")) knobs.velocity = 0;
-    check_list(knobs, {isochor::Element::tet4, VolumeSpace::node, isochor::CavityControl::pressure}, scheme);
+    // Cables must be met at the end of a step.
+    const bool pulled = scheme->evaluated_at() == 1;
+    check_list(knobs,
+               {isochor::Element::tet4, VolumeSpace::node, isochor::CavityControl::pressure, 0, pulled},
+               scheme);
   }
 }
 
@@ -245,7 +253,9 @@ TEST_CASE("stiffnesses of cells add up to that of the body", "[gradients]") {
 // linear.
 TEST_CASE("a body that flies moves with its velocity and falls with gravity", "[gradients]") {
   for (const auto& scheme : {isochor::bdf2(), isochor::newmark(), isochor::implicit_midpoint()}) {
-    World world = make_world(tight(scheme));
+    isochor::WorldOptions options = dynamic_options();
+    options.scheme = scheme;
+    World world = make_world(options);
     const BodyId body = add_body(world, block({0, 0, 0}, {1, 1, 1}, {1, 1, 1}), isochor::Element::tet4,
                                  neo_hookean(1e4, 0.3));
     std::vector<Vec3> v(world.rest_positions(body).size(), {1, 2, 3});
