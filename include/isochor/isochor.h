@@ -464,17 +464,16 @@ typedef const char* (*iso_keys_fn)(void* user, double value);
 
 /* A number of the scene, or a list of them. */
 enum {
-  ISO_PARAMETER_AMOUNT_OF = 0,      /* of `effect`, in its unit */
-  ISO_PARAMETER_FORCE_AT = 1,       /* a factor on a dead force `vector` [N] at `point` of `body` */
-  ISO_PARAMETER_GRAVITY = 2,        /* along `vector`, whose length is the unit [m/s^2] */
-  ISO_PARAMETER_DENSITY = 3,        /* of `region` of `body` [kg/m^3] */
-  ISO_PARAMETER_MATERIAL = 4,       /* a number among the keys of the material of `region` of `body` */
-  ISO_PARAMETER_STIFFNESS = 5,      /* a factor on the stiffness of `region` of `body`, at 1 */
-  ISO_PARAMETER_CELL_STIFFNESS = 6, /* the same of each cell of `body`: as many numbers; not by tangents */
-  ISO_PARAMETER_CONSTANT_OF = 7,    /* a number among the keys of `effect`, whose kind is `effect_kind` */
-  ISO_PARAMETER_SHAPE = 8,          /* rest positions of `body` move by this times `motion` */
-  ISO_PARAMETER_INITIAL_VELOCITY =
-      9 /* of trajectories: velocities at the start change by this times `motion` */
+  ISO_PARAMETER_AMOUNT_OF = 0,       /* of `effect`, in its unit */
+  ISO_PARAMETER_FORCE_AT = 1,        /* a factor on a dead force `vector` [N] at `point` of `body` */
+  ISO_PARAMETER_GRAVITY = 2,         /* along `vector`, whose length is the unit [m/s^2] */
+  ISO_PARAMETER_DENSITY = 3,         /* of `region` of `body` [kg/m^3] */
+  ISO_PARAMETER_MATERIAL = 4,        /* a number among the keys of the material of `region` of `body` */
+  ISO_PARAMETER_STIFFNESS = 5,       /* a factor on the stiffness of `region` of `body`, at 1 */
+  ISO_PARAMETER_CELL_STIFFNESS = 6,  /* the same of each cell of `body`: as many numbers; not by tangents */
+  ISO_PARAMETER_CONSTANT_OF = 7,     /* a number among the keys of `effect`, whose kind is `effect_kind` */
+  ISO_PARAMETER_SHAPE = 8,           /* rest positions of `body` move by this times `motion` */
+  ISO_PARAMETER_INITIAL_VELOCITY = 9 /* of trajectories: those at the start change by this times `motion` */
 };
 typedef struct iso_parameter {
   size_t size;

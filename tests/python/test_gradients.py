@@ -256,8 +256,8 @@ def test_a_thick_tube_has_the_sensitivities_of_the_closed_form():
     assert (pressure * jacobian[:, 0] + jacobian[:, 1]) / jacobian[:, 1] == pytest.approx(0, abs=1e-8)
 
 
-def block(gap=0.001, down=0.05, friction=0.0, scheme="statics"):
-    world = iso.World(**{**TIGHT, "scheme": scheme})
+def block(gap=0.001, down=0.05, friction=0.0, scheme="statics", **solving):
+    world = iso.World(**{**TIGHT, "scheme": scheme, **solving})
     body = world.add_body(iso.box_mesh(divisions=(2, 2, 2)), iso.neo_hookean(young=1e4, poisson=0.4), element="tet4")
     top = world.add(iso.dirichlet(body, surfaces="z1", displacement=(0, 0, -1), amount=down, name="top"))
     plane = {"shape": "plane", "position": (0, 0, -gap), "axis": (0, 0, 1)}
@@ -266,7 +266,8 @@ def block(gap=0.001, down=0.05, friction=0.0, scheme="statics"):
 
 
 def test_one_sided_derivatives_say_so():
-    world, body, top = block(gap=0.05 + 1e-8)
+    # A body that is carried and not strained has forces of rounding alone.
+    world, body, top = block(gap=0.05 + 1e-8, force_tolerance=1e-10)
     world.advance(1)
     told = world.gradients([Output.reaction(top, (0, 0, 1))], [top])
     assert not told.regular and told.undecided == ("floor",) and "about to touch" in told.note
@@ -440,7 +441,7 @@ def swing(**knobs):
     body = world.add_body(iso.box_mesh(divisions=(2, 1, 1)), iso.neo_hookean(young=k["young"], poisson=0.45))
     world.add(iso.volume(body))
     world.add(iso.dirichlet(body, surfaces="x0"))
-    load = world.add(iso.traction(body, "x1", traction=(0, 100, 50), amount=k["pull"]))
+    load = world.add(iso.traction(body, surface="x1", traction=(0, 100, 50), amount=k["pull"]))
     x = body.rest_positions
     body.velocities = k["speed"] * (x * (0, 1, 1))
     return world, body, load

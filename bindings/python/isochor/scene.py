@@ -310,6 +310,7 @@ class Search:
 
     @property
     def reached(self) -> bool:
+        """Whether every metric and probe is known to be within the error."""
         return self.end == "reached"
 
     def __repr__(self) -> str:
