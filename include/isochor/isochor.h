@@ -606,6 +606,49 @@ ISO_API iso_status iso_scene_plan(const iso_scene* scene, int32_t* steps, double
 ISO_API iso_status iso_scene_world(const iso_scene* scene, int32_t threads, iso_world** out, char* message,
                                    size_t message_size);
 
+/* One run of a search for an error. */
+typedef struct iso_trial {
+  size_t size;
+  const char* setting; /* element and mesh in words */
+  const char* status;  /* "converged", ... */
+  int32_t elements, unknowns;
+  double seconds;
+  double indicator; /* of the error, relative, the largest of all metrics and probes; below 0: unknown */
+} iso_trial;
+/* Not 0: stop. Texts are good during the call. */
+typedef int (*iso_trial_fn)(void* user, const iso_trial* trial);
+typedef struct iso_search_options {
+  size_t size;
+  double error;          /* relative: 0.01 */
+  const char* folder;    /* where outputs of the best run go; null: none are kept */
+  int32_t threads;       /* 0: all the machine has */
+  int32_t most_levels;   /* of refinement of the whole mesh; 0: 4. Three times as many where it counts */
+  double budget;         /* of all runs together [s]; 0: none */
+  iso_trial_fn on_trial; /* after each run; null: nobody is told */
+  void* user;
+} iso_search_options;
+enum {
+  ISO_SEARCH_REACHED = 0,
+  ISO_SEARCH_NOT_REACHED = 1, /* within the levels and the memory there are */
+  ISO_SEARCH_BUDGET = 2,
+  ISO_SEARCH_STOPPED = 3,     /* by the function */
+  ISO_SEARCH_NOT_WRITTEN = 4, /* outputs could not be */
+  ISO_SEARCH_FAILED = 5       /* no run converged */
+};
+typedef struct iso_search_result {
+  size_t size;
+  int32_t end;         /* ISO_SEARCH_... */
+  iso_scene* best;     /* as the best run has it, which belongs to the caller; null: no run converged */
+  double indicator;    /* of the best run; below 0: unknown */
+  int32_t trials;      /* how many runs there were */
+  uint64_t state_hash; /* of the best run at its end */
+} iso_search_result;
+/* Finds element and mesh so that every metric and probe of a scene is within an error. An error that is not
+ * reached is ISO_OK and told in `end`; `message` holds how the answer is known, or why there is none. Bad
+ * input is refused. */
+ISO_API iso_status iso_scene_solve_to(const iso_scene* scene, const iso_search_options* options,
+                                      iso_search_result* out, char* message, size_t message_size);
+
 #ifdef __cplusplus
 }
 #endif
