@@ -14,7 +14,7 @@ constexpr std::size_t kPacked[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
 // Kelvin-Voigt viscosity by the potential of one increment: viscosity/h |E - E_before|^2 [Pa] with Green's
 // strain E, so that rigid motions cost nothing. Its second Piola-Kirchhoff stress is 2 viscosity (E -
 // E_before)/h. Without an increment (statics, results) all is zero.
-class ViscousPool final : public StencilPool {
+class ViscousPool final : public StencilPool, public DissipativeStencils {
  public:
   ViscousPool(std::string name, const SolidPool& solid, double viscosity)
       : name_(std::move(name)), solid_(solid), viscosity_(viscosity) {
@@ -23,6 +23,7 @@ class ViscousPool final : public StencilPool {
   }
   std::string_view name() const override { return name_; }
   StencilShape shape() const override { return {.energy = true}; }
+  StencilFacets facets() const override { return {.dissipative = this}; }
 
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override {
     for (Index s = request.begin; s < request.end; ++s) {
@@ -120,7 +121,7 @@ class ViscousPool final : public StencilPool {
 };
 
 // Drag in proportion to mass: rate m/(2 h) |x - x_before|^2 at every node.
-class DragPool final : public StencilPool {
+class DragPool final : public StencilPool, public DissipativeStencils {
  public:
   DragPool(std::string name, const std::vector<std::pair<Index, double>>& mass, double rate)
       : name_(std::move(name)) {
@@ -133,6 +134,7 @@ class DragPool final : public StencilPool {
   }
   std::string_view name() const override { return name_; }
   StencilShape shape() const override { return {.energy = true}; }
+  StencilFacets facets() const override { return {.dissipative = this}; }
 
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override {
     const double h = request.increment.h;

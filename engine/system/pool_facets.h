@@ -105,12 +105,20 @@ class MovingStencils {
   ~MovingStencils() = default;
 };
 
+// Stencils whose energy is a potential of both ends of an increment that stays the same when these change
+// places (viscosity, drag), so that how forces at its end depend on its beginning follows from evaluate().
+class DissipativeStencils {
+ protected:
+  ~DissipativeStencils() = default;
+};
+
 struct StencilFacets {
   const LaggedStencils* lagged = nullptr;
   const RememberingStencils* remembering = nullptr;
   const BarrierStencils* barrier = nullptr;
   const RenewedStencils* renewed = nullptr;
   const MovingStencils* moving = nullptr;
+  const DissipativeStencils* dissipative = nullptr;
 };
 
 // The increment of time that rows are evaluated for, and what the pool keeps between steps.

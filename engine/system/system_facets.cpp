@@ -34,6 +34,7 @@ SystemFacets::SystemFacets(std::span<const std::shared_ptr<const StencilPool>> s
     add(barriers, p, f.barrier);
     add(renewed, p, f.renewed);
     add(moving, p, f.moving);
+    add(dissipative, p, f.dissipative);
     coupled = coupled || (f.lagged && f.lagged->couples());
   }
 }

@@ -31,6 +31,7 @@ struct SystemFacets {
   std::vector<FacetOf<BarrierStencils>> barriers;
   std::vector<FacetOf<RenewedStencils>> renewed;
   std::vector<FacetOf<MovingStencils>> moving;
+  std::vector<FacetOf<DissipativeStencils>> dissipative;
   std::vector<MemoryOf<RememberingRows>> remembering_rows;
   std::vector<FacetOf<ImpactRows>> impacts;  // compliant rows, one or more
   std::vector<FacetOf<TurningRows>> turning;

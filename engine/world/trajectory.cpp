@@ -5,6 +5,9 @@
 // maps of each node (integrators/), with coefficients that follow from the scheme itself (StepMap). Inertia
 // in R is s M (x - P y). So, for an output J:
 //
+// Damping depends on where the increment began as well; its potential is the same when both ends change
+// places, so that what it adds to either way follows from its forces (DissipativeStencils).
+//
 //   adjoint   backward: with y_bar' = dJ/dy' of what comes after and of outputs there, solve
 //             A(z) a = (B^T y_bar', dJ/dlambda); then dJ/dp -= a . dR/dp and
 //             y_bar = A^T y_bar' + P^T (s M a)
@@ -102,10 +105,17 @@ class World::Impl::Trajectory {
     Inertia inertia;
   };
   Index steps() const { return static_cast<Index>(query_.steps.size()); }
+  bool dissipates() const { return !w_.system().facets().dissipative.empty(); }
   bool ends_there() const { return w_.options.scheme->evaluated_at() == 1; }
   Result<void> check_parameters() const;
   Result<void> check_outputs() const;
   Result<void> looks_back();
+  std::vector<Vec3> gradient_of(Index pool, const StencilIncrement& increment, std::span<const Vec3> x) const;
+  std::vector<Vec3> dissipation(StencilIncrement increment, std::span<const Vec3> x,
+                                std::span<const Vec3> before) const;
+  // How forces of dissipation change along a direction of the beginning of an increment, and the transpose.
+  std::vector<Vec3> dissipation_along(const Increment& increment, std::span<const Vec3> way) const;
+  std::vector<Vec3> dissipation_back(const Increment& increment, std::span<const Vec3> way) const;
   Result<void> make_step(Index n);
   Result<void> remake(Index first);
   void stand_at(const State& state, const State& memory_of);
@@ -224,26 +234,100 @@ Result<void> World::Impl::Trajectory::check_parameters() const {
   return {};
 }
 
-// Whether forces depend on where an increment began otherwise than by inertia: damping does.
+std::vector<Vec3> World::Impl::Trajectory::gradient_of(Index p, const StencilIncrement& increment,
+                                                       std::span<const Vec3> x) const {
+  const StencilPool& pool = *w_.system().parts().stencil_pools[at(p)];
+  const auto functions = static_cast<std::size_t>(pool.functions());
+  std::vector<double> energy(at(pool.stencils())), value(energy.size() * functions);
+  std::vector<Vec3> gradient(pool.nodes().item.size()), jacobian(gradient.size() * functions);
+  StencilSlots slots;
+  slots.energy = energy;
+  slots.value = value;
+  slots.gradient = gradient;
+  slots.jacobian = jacobian;
+  StencilRequest request = w_.assembly().request(p, Want::gradient, x);
+  request.increment = increment;
+  pool.evaluate(request, slots);
+  return gradient;
+}
+
+std::vector<Vec3> World::Impl::Trajectory::dissipation(StencilIncrement increment, std::span<const Vec3> x,
+                                                       std::span<const Vec3> before) const {
+  increment.before = before;
+  std::vector<Vec3> out(x.size());
+  for (const auto& dissipative : w_.system().facets().dissipative) {
+    const auto& nodes = w_.system().parts().stencil_pools[at(dissipative.pool)]->nodes().item;
+    const auto gradient = gradient_of(dissipative.pool, increment, x);
+    for (std::size_t i = 0; i < gradient.size(); ++i) out[at(nodes[i])] += gradient[i];
+  }
+  return out;
+}
+
+namespace {
+
+// Steps to both sides; a potential of squares of Green's strain makes their difference exact.
+struct Sides {
+  double step = 0;
+  std::vector<Vec3> up, down;
+};
+
+Sides sides_of(std::span<const Vec3> x, std::span<const Vec3> way, double length) {
+  constexpr double far = 1e-2;
+  double most = 0;
+  for (const Vec3& v : way) most = std::max(most, norm(v));
+  Sides out{most > 0 ? far * length / most : 0, {x.begin(), x.end()}, {x.begin(), x.end()}};
+  add_to(out.up, out.step, way);
+  add_to(out.down, -out.step, way);
+  return out;
+}
+
+std::vector<Vec3> difference(std::vector<Vec3> up, std::span<const Vec3> down, double step) {
+  for (std::size_t i = 0; i < up.size(); ++i) up[i] = step > 0 ? (0.5 / step) * (up[i] - down[i]) : Vec3{};
+  return up;
+}
+
+}  // namespace
+
+std::vector<Vec3> World::Impl::Trajectory::dissipation_along(const Increment& increment,
+                                                             std::span<const Vec3> way) const {
+  const StencilIncrement& i = increment.inertia.increment;
+  const Sides begin = sides_of(i.before, way, w_.system().length());
+  return difference(dissipation(i, w_.state.x, begin.up), dissipation(i, w_.state.x, begin.down), begin.step);
+}
+
+// Both ends change places: what forces at the beginning do when the end goes along.
+std::vector<Vec3> World::Impl::Trajectory::dissipation_back(const Increment& increment,
+                                                            std::span<const Vec3> way) const {
+  const StencilIncrement& i = increment.inertia.increment;
+  const Sides end = sides_of(w_.state.x, way, w_.system().length());
+  return difference(dissipation(i, i.before, end.up), dissipation(i, i.before, end.down), end.step);
+}
+
+// Whether forces depend on where an increment began otherwise than by inertia and by what is known to.
 Result<void> World::Impl::Trajectory::looks_back() {
   if (!w_.options.scheme->has_inertia()) return {};
-  Increment first = stand_in(part_first_ + 1);
-  std::vector<Vec3> before(first.inertia.increment.before.begin(), first.inertia.increment.before.end());
+  const Increment first = stand_in(part_first_ + 1);
   Equilibrium here(w_, &first.inertia);
-  const auto force = [&] {
-    return equations_at({w_.system(), w_.assembly(), *w_.data, w_.instances, &first.inertia}, w_.state, {})
-        .force;
-  };
-  const auto as_it_is = force();
+  // Pools are asked with the multipliers that are found on the way.
+  (void)equations_at({w_.system(), w_.assembly(), *w_.data, w_.instances, &first.inertia}, w_.state, {});
+  StencilIncrement elsewhere = first.inertia.increment;
+  std::vector<Vec3> before(elsewhere.before.begin(), elsewhere.before.end());
   for (std::size_t i = 0; i < before.size(); ++i) {
     const double far = 1e-3 * w_.system().length();
     before[i] += far * Vec3{i % 2 ? 1.0 : -1.0, i % 3 ? 0.5 : -1.0, i % 5 ? 0.25 : -0.5};
   }
-  first.inertia.increment.before = before;
-  if (force() == as_it_is) return {};
-  return trajectory_error(
-      "an effect looks back over the increment, as damping does, which gradients of "
-      "trajectories do not follow; leave it out");
+  elsewhere.before = before;
+  const auto& pools = w_.system().parts().stencil_pools;
+  for (Index p = 0; p < static_cast<Index>(pools.size()); ++p) {
+    if (pools[at(p)]->facets().dissipative) continue;
+    if (gradient_of(p, elsewhere, w_.state.x) == gradient_of(p, first.inertia.increment, w_.state.x))
+      continue;
+    return trajectory_error(
+        "\"" + std::string(pools[at(p)]->name()) +
+        "\" looks back over the increment, which gradients of trajectories do not follow; "
+        "leave it out");
+  }
+  return {};
 }
 
 // --- The way -----------------------------------------------------------------------------------------------
@@ -477,6 +561,7 @@ Result<void> World::Impl::Trajectory::by_adjoint(Gradients& out) {
         for (std::size_t k = 0; k < lists_; ++k) add_to(before[b], map.before[k][b], felt[j][k]);
         add_to(before[b], map.predicted[b], pull);
       }
+      if (dissipates()) add_to(before[0], -1, dissipation_back(increment, adjoint.value().force));
       felt[j] = std::move(before);
     }
     look_for_edges(n, out);
@@ -540,6 +625,7 @@ Result<void> World::Impl::Trajectory::by_tangent(Gradients& out) {
       std::vector<double> row(change.value()[k].theta);
       for (double& r : row) r = -r;
       add_to(load, -1, change.value()[k].force);
+      if (dissipates()) add_to(load, -1, dissipation_along(increment, moved[k][0]));
       if (auto r = eq.solve(load, row, eq.way_of(change.value()[k].position)); !r)
         return in_step(n, r.error());
       Lists3 after = zeros(lists_, nodes);

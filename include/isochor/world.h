@@ -183,8 +183,8 @@ class ISOCHOR_API World {
   Result<Gradients> gradients(const GradientQuery& query);
   // Goes through increments of these lengths, as step() does, and finds the gradients of what is seen on the
   // way. The world is at the end of them then, with the bits of the same steps; on an error it is where it
-  // was. Every time scheme. Refused with what remembers, lags or looks back over an increment: contact with
-  // friction or on surfaces, impacts, damping, gas and liquid, viscoelasticity.
+  // was. Every time scheme, damping too. Refused with contact that rubs, rebounds or is of surfaces, and with
+  // what remembers: gas and liquid in chambers, viscoelasticity, softening.
   Result<Gradients> trajectory_gradients(const TrajectoryQuery& query);
   // How much each cell has to do with the error that the mesh makes in each output: the error of the strain
   // there, found by recovery, times how far the output feels it, in statics by its adjoint. One for the

@@ -430,3 +430,24 @@ TEST_CASE("pools that change with time by themselves say so, and the others do n
   });
   CHECK(moved > 0);
 }
+
+TEST_CASE("potentials of both ends of an increment are the same when these change places") {
+  int dissipative = 0;
+  for_every_pool([&](const PoolProbe& probe) {
+    const auto& x = probe.scene().x();
+    const std::vector<Vec3> y = probe.scene().moved(probe.scene().direction(3), 0.02);
+    const test::Slots there = probe.evaluate_between(x, y), back = probe.evaluate_between(y, x);
+    double sum = 0;
+    for (std::size_t s = 0; s < there.energy.size(); ++s) {
+      if (probe.pool().facets().dissipative) CHECK(there.energy[s] == Approx(back.energy[s]).epsilon(1e-12));
+      sum += there.energy[s];
+    }
+    if (!probe.pool().facets().dissipative) return;
+    CHECK(sum > 0);
+    // Nothing where nothing moves.
+    const test::Slots still = probe.evaluate_between(x, x);
+    for (const double e : still.energy) CHECK(e == 0);
+    ++dissipative;
+  });
+  CHECK(dissipative > 1);
+}

@@ -96,6 +96,14 @@ Slots PoolProbe::evaluate(Want want, const std::vector<Vec3>& x, const std::vect
   return slots;
 }
 
+Slots PoolProbe::evaluate_between(const std::vector<Vec3>& before, const std::vector<Vec3>& x) const {
+  Slots slots(pool_);
+  StencilRequest r = request(Want::gradient, Definiteness::exact, 0, pool_.stencils(), x, multiplier_);
+  r.increment.before = before;
+  pool_.evaluate(r, slots.spans());
+  return slots;
+}
+
 Slots PoolProbe::evaluate_at(double t) const {
   Slots slots(pool_);
   StencilRequest r =

@@ -70,6 +70,8 @@ class PoolProbe {
   Slots evaluate_range(const std::vector<isochor::Vec3>& x, isochor::Index begin, isochor::Index end) const;
   // With what moves by itself where it is at time t.
   Slots evaluate_at(double t) const;
+  // In an increment that begins at one place and ends at another.
+  Slots evaluate_between(const std::vector<isochor::Vec3>& before, const std::vector<isochor::Vec3>& x) const;
   void evaluate_into(Slots& slots, isochor::Want want, isochor::Definiteness definiteness,
                      const std::vector<isochor::Vec3>& x) const;
   Eigen::MatrixXd dense_hessian(const Slots& slots, isochor::Index stencil) const;

@@ -16,15 +16,16 @@ using isochor::World;
 
 struct Knobs {
   double young = 1e4, poisson = 0.3, density = 1000, stiffness = 1;
-  double gravity = -2;        // along z
-  double clamp = 1;           // of a displacement by (0, 0.02, 0.01)
-  double cavity = 400;        // pressure [Pa], or volume over that at rest
-  double cable = 0.97;        // length over that at rest
-  double spring = 900;        // of the cable [N/m]
-  double push = 1;            // of a force
-  double shape = 0;           // of shape_motion()
-  double velocity = 0;        // of shape_motion(), at the start [1/s]
-  std::vector<double> field;  // stiffness of cells; empty: uniform
+  double gravity = -2;             // along z
+  double clamp = 1;                // of a displacement by (0, 0.02, 0.01)
+  double cavity = 400;             // pressure [Pa], or volume over that at rest
+  double cable = 0.97;             // length over that at rest
+  double spring = 900;             // of the cable [N/m]
+  double push = 1;                 // of a force
+  double shape = 0;                // of shape_motion()
+  double viscosity = 0, drag = 0;  // of a damping [Pa s], [1/s]
+  double velocity = 0;             // of shape_motion(), at the start [1/s]
+  std::vector<double> field;       // stiffness of cells; empty: uniform
 };
 inline constexpr Vec3 kPushed{1, 1. / 3, 1. / 3}, kPush{1, 4, 6};  // at a node
 
@@ -41,7 +42,7 @@ struct Block {
   Kind kind;
   World world;
   BodyId body{};
-  EffectId clamp{}, cavity{}, cable{};
+  EffectId clamp{}, cavity{}, cable{}, damping{};
 };
 
 inline isochor::WorldOptions tight_statics() {
@@ -126,6 +127,13 @@ inline isochor::CableDef cable_of(const Knobs& knobs, const Kind&) {
   return def;
 }
 
+inline isochor::DampingDef damping_of(const Knobs& knobs) {
+  isochor::DampingDef def;
+  def.viscosity = knobs.viscosity;
+  def.mass_rate = knobs.drag;
+  return def;
+}
+
 // At rest, or as it begins to move.
 inline Block build_block(const Knobs& knobs, const Kind& kind,
                          isochor::WorldOptions options = tight_statics()) {
@@ -157,6 +165,11 @@ inline Block build_block(const Knobs& knobs, const Kind& kind,
     isochor::CableDef cable = cable_of(knobs, kind);
     cable.body = b.body;
     b.cable = value(b.world.add(isochor::cable(cable)));
+  }
+  if (knobs.viscosity > 0 || knobs.drag > 0) {
+    isochor::DampingDef damping = damping_of(knobs);
+    damping.body = b.body;
+    b.damping = value(b.world.add(isochor::damping(damping)));
   }
   value(b.world.add_force_at(b.body, kPushed + knobs.shape * shape_motion(kPushed), knobs.push * kPush));
   if (knobs.velocity != 0) {

@@ -88,6 +88,16 @@ std::vector<Asked> parameters_of(const Block& block, bool statics) {
                                           }),
                    &Knobs::spring});
   }
+  if (k.viscosity > 0) {
+    out.push_back({"viscosity",
+                   Parameter::constant_of(block.damping, k.viscosity,
+                                          [k](double v) {
+                                            Knobs other = k;
+                                            other.viscosity = v;
+                                            return isochor::damping(damping_of(other));
+                                          }),
+                   &Knobs::viscosity});
+  }
   if (!statics)
     out.push_back({"velocity", Parameter::initial_velocity(block.body, motion), &Knobs::velocity});
   return out;
@@ -206,6 +216,19 @@ TEST_CASE("the same with every element and Poisson's ratio, and with consistent 
   }
 }
 
+TEST_CASE("damping looks back over an increment, and gradients with it", "[gradients]") {
+  for (const SchemePtr& scheme :
+       {isochor::implicit_euler(), isochor::implicit_midpoint(), isochor::generalized_alpha(0.6)}) {
+    for (const auto element : {isochor::Element::tet4_edge_smoothed, isochor::Element::tet10}) {
+      CAPTURE(std::string(scheme->name()), name_of(element));
+      Knobs knobs = moving(0.45);
+      knobs.viscosity = 40;
+      knobs.drag = 3;
+      check_list(knobs, {element, VolumeSpace::node, isochor::CavityControl::pressure, 0, false}, scheme);
+    }
+  }
+}
+
 TEST_CASE("states that are made again change no gradient", "[gradients]") {
   const Kind kind{isochor::Element::tet4, VolumeSpace::node, isochor::CavityControl::pressure};
   for (const auto mode : {GradientQuery::Mode::adjoint, GradientQuery::Mode::tangent}) {
@@ -312,14 +335,16 @@ TEST_CASE("ways that have no gradients are refused by name, and leave the world 
              }),
              ContainsSubstring("adjoint"));
 
-  // What looks back over an increment.
-  Block damped = build_block(moving(0.3), kind, tight(isochor::implicit_euler()));
-  isochor::DampingDef damping;
-  damping.body = damped.body;
-  damping.viscosity = 10;
-  value(damped.world.add(isochor::damping(damping)));
-  CHECK_THAT(refusal(damped.world.trajectory_gradients(query_of(damped, true, false))),
-             ContainsSubstring("looks back over the increment"));
+  // What lags behind.
+  Block rubbed = build_block(moving(0.3), kind, tight(isochor::implicit_euler()));
+  isochor::ContactDef floor;
+  floor.body = rubbed.body;
+  floor.surfaces = {"z0"};
+  floor.obstacle.position = {0, 0, -0.01};
+  floor.friction = 0.3;
+  value(rubbed.world.add(isochor::contact(floor)));
+  CHECK_THAT(refusal(rubbed.world.trajectory_gradients(query_of(rubbed, true, false))),
+             ContainsSubstring("friction") && ContainsSubstring("leave it out"));
 
   GradientQuery still;
   still.outputs = {Output::node(block.body, 0, {1, 0, 0})};
