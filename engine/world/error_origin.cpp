@@ -15,18 +15,19 @@ namespace {
 
 using Gradient = Eigen::Matrix<double, 9, 1>;
 
-// Of every cell of a region the root of the integral of |F* - F|^2, F* being the field that is fitted to the
-// gradients around each node. In cells with one point F* is looked at in the corners, elsewhere in the
-// points.
+// Of every cell of a region the root of the integral of |F* - F|^2, F being the gradient of displacements and
+// F* the field that is fitted to those around each node. In cells with one point F* is looked at in the
+// corners, elsewhere in the points.
 void add_strain_errors(const BodyData& body, const RegionData& region, const SolidPool& pool,
                        std::span<const Vec3> x, std::span<const Vec3> rest, std::vector<double>& error,
-                       double& size) {
+                       double& strain) {
   const ReferenceElement& element = *body.reference;
   const auto points = at(pool.data().points), nodes = static_cast<std::size_t>(element.nodes);
   const auto gradient = [&](Index s, std::size_t q) {
     Gradient F;
     double volume_strain = 0;
     pool.deformation_gradient(s, static_cast<int>(q), x, rest, F.data(), volume_strain);
+    for (int k = 0; k < 3; ++k) F(4 * k) -= 1;
     return F;
   };
   const auto weight = [&](Index s, std::size_t q) { return pool.data().weight[at(s) * points + q]; };
@@ -46,7 +47,7 @@ void add_strain_errors(const BodyData& body, const RegionData& region, const Sol
     double sum = 0;
     for (std::size_t q = 0; q < points; ++q) {
       const Gradient F = gradient(s, q);
-      size += weight(s, q) * F.squaredNorm();
+      strain += weight(s, q) * F.squaredNorm();
       Gradient mean = Gradient::Zero();
       for (std::size_t a = 0; a < nodes; ++a) {
         const Gradient& at_node = fitted[at(of_cell[a] - body.first_node)];
@@ -59,22 +60,25 @@ void add_strain_errors(const BodyData& body, const RegionData& region, const Sol
   }
 }
 
-// Errors below this part of the deformation gradient are rounding.
-constexpr double kRounding = 1e-12;
+// Errors below this part of the gradient of displacements, and of 1, are rounding: of the fit, and of
+// positions.
+constexpr double kRounding = 1e-9, kRoundingOfPlaces = 1e-14;
 
 std::vector<double> strain_errors(const BodyData& body, std::span<const Vec3> x, std::span<const Vec3> rest) {
   std::vector<double> error(at(body.mesh.cell_count()));
-  double size = 0;
+  double strain = 0, volume = 0;
   for (const RegionData& region : body.regions) {
     auto data = solid_data(*body.reference, rest, body.global_cells, region.cells, VolumeFunctions::none);
     if (!data) continue;
     const SolidPool pool("", std::make_shared<const SolidData>(std::move(data).value()), nullptr,
                          VolumeStrain::linear);
-    add_strain_errors(body, region, pool, x, rest, error, size);
+    add_strain_errors(body, region, pool, x, rest, error, strain);
+    for (Index s = 0; s < pool.stencils(); ++s) volume += pool.volume(s);
   }
   double sum = 0;
   for (const double e : error) sum += e * e;
-  if (!(sum > kRounding * kRounding * size)) std::fill(error.begin(), error.end(), 0.0);
+  if (!(sum > kRounding * kRounding * strain + kRoundingOfPlaces * kRoundingOfPlaces * volume))
+    std::fill(error.begin(), error.end(), 0.0);
   return error;
 }
 

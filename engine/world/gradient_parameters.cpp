@@ -262,6 +262,8 @@ Result<Equations> World::Impl::Equilibrium::change_by_density(const Parameter& p
   auto regions = w.said.builder.regions(
       p.body, p.region.empty() ? std::span<const std::string>() : std::span(&p.region, 1), "gradients");
   if (!regions) return regions.failure();
+  // Drag goes with mass, in a way that its pool alone knows.
+  if (inertia && !w.system().facets().dissipative.empty()) return density_beside(p, regions.value());
   // As gravity acts (gravity_mass()).
   const bool lumped = w.options.scheme->has_inertia() && !w.options.consistent_mass;
   std::vector<double> volume(w.state.x.size(), 0);
@@ -273,6 +275,31 @@ Result<Equations> World::Impl::Equilibrium::change_by_density(const Parameter& p
   Equations change(w.system(), gauges.size());
   for (std::size_t i = 0; i < volume.size(); ++i) change.force[i] -= volume[i] * g;
   if (inertia && inertia->mass_scale > 0) add_mass_change(body, regions.value(), change);
+  return change;
+}
+
+// The equations are linear in densities.
+Result<Equations> World::Impl::Equilibrium::density_beside(const Parameter& p,
+                                                           std::span<const std::size_t> regions) {
+  const BodyData& body = w.said.builder.body(p.body);
+  double by = 0;
+  for (const std::size_t r : regions) by = std::max(by, body.regions[r].density);
+  if (!(by > 0)) by = 1;
+  const auto at_density = [&](double more) -> Result<Equations> {
+    Description next{w.said.builder.again(), w.said.places, w.said.sources, w.said.order};
+    for (const std::size_t r : regions) {
+      const RegionData& region = body.regions[r];
+      if (auto set = next.builder.set_density(p.body, region.name, region.density + more); !set)
+        return set.failure();
+    }
+    return w.equations_beside(std::move(next), gauges, inertia);
+  };
+  auto more = at_density(by), present_one = at_density(0);
+  if (!more) return Error{"gradients: density: " + more.error()};
+  if (!present_one) return Error{"gradients: density: " + present_one.error()};
+  Equations change(w.system(), gauges.size());
+  change.add(1 / by, more.value());
+  change.add(-1 / by, present_one.value());
   return change;
 }
 

@@ -75,6 +75,7 @@ struct World::Impl::Equilibrium {
   Result<Equations> change_by_amount(const Parameter& parameter);
   Result<Equations> change_by_stiffness(const Parameter& parameter);
   Result<Equations> change_by_density(const Parameter& parameter);
+  Result<Equations> density_beside(const Parameter& parameter, std::span<const std::size_t> regions);
   void add_mass_change(const BodyData& body, std::span<const std::size_t> regions, Equations& change) const;
   Result<Equations> check_motion(const Parameter& parameter) const;
   Result<Equations> change_beside(const Parameter& parameter);

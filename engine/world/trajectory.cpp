@@ -179,12 +179,12 @@ Result<void> World::Impl::Trajectory::check() {
   if (w_.settled) return trajectory_error("the state is unfinished; take a step without a budget first");
   const SystemFacets& facets = w_.system().facets();
   const char* why = nullptr;
-  if (!facets.lagged.empty()) why = "friction, or a pressure on faces with a free rim, lags behind";
-  if (!facets.impacts.empty()) why = "contact with a rebound lets velocities jump";
-  if (!facets.renewed.empty()) why = "contact on surfaces renews its rows";
+  if (!facets.remembering.empty()) why = "a material remembers what came before";
   if (!facets.remembering_rows.empty())
     why = "gas and liquid in chambers remember what they were filled with";
-  if (!facets.remembering.empty()) why = "a material remembers what came before";
+  if (!facets.renewed.empty()) why = "contact on surfaces renews its rows";
+  if (!facets.impacts.empty()) why = "contact with a rebound lets velocities jump";
+  if (!facets.lagged.empty()) why = "friction, or a pressure on faces with a free rim, lags behind";
   if (why)
     return trajectory_error(std::string(why) +
                             ", which gradients of trajectories do not follow; leave it out");
