@@ -85,7 +85,8 @@ void print_sets(const Mesh& mesh) {
 }
 
 const char* cell_name(CellType type) {
-  return type == CellType::tet10 ? "Tet10" : (type == CellType::hex8 ? "Hex8" : "Tet4");
+  constexpr const char* names[] = {"Tet4", "Tet10", "Hex8", "Tri3"};
+  return names[static_cast<int>(type)];
 }
 
 // What every body has without a group of its mesh.

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "engine/base/text.h"
+#include "engine/math/triangle.h"
 #include "engine/mesh/cell_shape.h"
 
 namespace isochor {
@@ -109,10 +110,37 @@ Result<PointInBody> embed_in_hexahedra(const BodyData& body, std::span<const Vec
 
 }  // namespace
 
+namespace {
+
+// As embed(), of a thin body: the point of its triangles that is nearest, at most a twentieth of an edge
+// away.
+Result<PointInBody> embed_in_sheet(const BodyData& body, std::span<const Vec3> rest, const Vec3& point,
+                                   const std::string& who) {
+  constexpr double reach = 0.05;
+  double least = std::numeric_limits<double>::infinity();
+  std::map<Index, double> terms;
+  for (std::size_t c = 0; c + 3 <= body.global_cells.size(); c += 3) {
+    const Index* n = body.global_cells.data() + c;
+    const Vec3 &a = rest[at(n[0])], &b = rest[at(n[1])], &d = rest[at(n[2])];
+    const auto& w = nearest_on_triangle(point, a, b, d).weight;
+    const double distance = norm(point - (w[0] * a + w[1] * b + w[2] * d));
+    const double edge = std::max({norm(b - a), norm(d - b), norm(a - d)});
+    if (!(distance <= reach * edge) || !(distance < least)) continue;
+    least = distance;
+    terms.clear();
+    for (std::size_t k = 0; k < 3; ++k) terms[n[k]] = std::abs(w[k]) < 1e-12 ? 0 : w[k];
+  }
+  if (terms.empty()) return not_in_body(body, point, who);
+  return sorted(terms);
+}
+
+}  // namespace
+
 Result<PointInBody> embed(const BodyData& body, std::span<const Vec3> rest, const Vec3& point,
                           const std::string& who) {
   const auto per = static_cast<std::size_t>(nodes_per_cell(body.mesh.cell_type));
   if (body.mesh.cell_type == CellType::hex8) return embed_in_hexahedra(body, rest, point, who);
+  if (body.thin()) return embed_in_sheet(body, rest, point, who);
   double inside = -std::numeric_limits<double>::infinity();
   const Index* cell = nullptr;
   std::array<double, 4> l{};
@@ -149,7 +177,7 @@ PointInBody difference(const PointInBody& first, const PointInBody& second) {
 }
 
 double stiffest(const BodyData& body) {
-  double mu = 0;
+  double mu = body.lent_modulus;
   for (const RegionData& r : body.regions) mu = std::max(mu, r.material->shear_modulus());
   return mu;
 }

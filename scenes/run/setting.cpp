@@ -19,6 +19,8 @@ const char* key_word(Element e) {
       return "tet4_edge_smoothed";
     case Element::tet10:
       return "tet10";
+    case Element::tri3:
+      return "tri3";
     default:
       return "hex8";
   }
@@ -35,6 +37,8 @@ std::string element_text(const std::optional<Element>& element) {
       return "edge-smoothed Tet4";
     case Element::tet10:
       return "Tet10";
+    case Element::tri3:
+      return "triangles";
     default:
       return "Hex8";
   }

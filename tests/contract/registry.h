@@ -62,6 +62,9 @@ std::vector<SceneCase> scene_cases();
 // Of the scene cases: what attaches, pulls and fills bodies (registry_attachments.cpp).
 void add_attachments(std::vector<SceneCase>& out);
 
+// Thin bodies and layers that bend (registry_shells.cpp).
+void add_shells(std::vector<SceneCase>& out);
+
 // What solids do by themselves, springs, equations, given motion that is not rigid (registry_active.cpp).
 void add_active(std::vector<SceneCase>& out);
 
