@@ -16,10 +16,13 @@ namespace isochor {
 class HingePool final : public StencilPool {
  public:
   explicit HingePool(std::string name) : name_(std::move(name)) {}
-  // Edge, then the corners of the faces across it. `natural`: theta_0 [rad], NaN: as at rest.
+  // Edge, then the corners across it of the face that runs along it and of the one that runs against it:
+  // angles are positive where the faces fold toward their upper side. `natural`: theta_0 [rad], NaN: as at
+  // rest.
   void add(std::array<Index, 4> nodes, std::span<const Vec3> rest,
            double natural = std::numeric_limits<double>::quiet_NaN());
-  // Edge and the corner across; the face keeps the direction in its plane that is across the edge at rest.
+  // Edge and the corner across, of a face that runs along it; the face keeps the direction in its plane that
+  // is across the edge at rest.
   void add_clamped(std::array<Index, 3> nodes, std::span<const Vec3> rest);
   void set_stiffness(std::vector<double> stiffness) { stiffness_ = std::move(stiffness); }  // H [J/m^2]
   void finish() { finish_topology(); }

@@ -4,6 +4,7 @@
 
 #include "constraints/layer/membrane_pool.h"
 #include "constraints/layer/shell_rows.h"
+#include "constraints/stencil/surface_nodes.h"
 #include "engine/base/text.h"
 #include "engine/scene/builder.h"
 #include "isochor/effects/layer.h"
@@ -130,10 +131,9 @@ class ShellEffect final : public EffectSource {
                    "\" has no other mass; give the density of the sheet"};
     }
     if (def_.surfaces.empty()) return body.global_cells;
-    auto named = builder.faces(def_.body, def_.surfaces, def_.name);
-    if (!named) return named.failure();
-    const auto per = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
-    return flat_triangles(distinct_faces(named.value(), per), per);
+    auto outward = outward_faces(builder, def_.body, def_.surfaces, "shell \"" + def_.name + "\"");
+    if (!outward) return outward.failure();
+    return flat_triangles(outward.value(), static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type)));
   }
 
   ShellDef def_;

@@ -4,13 +4,16 @@
 #include <cmath>
 #include <map>
 
+#include "engine/base/text.h"
+
 namespace isochor {
 
 namespace {
 
-// An edge, ends ascending, and the corners across it.
+// An edge, ends ascending, and the corner across it in each of two faces: the one that runs along it from the
+// smaller end, and the one that runs against that. All angles then count alike as seen from the upper side.
 struct Edge {
-  Index across[2] = {-1, -1};
+  Index along = -1, against = -1;
   int faces = 0;
   Index row = -1;
 };
@@ -26,16 +29,22 @@ Result<Edges> edges_of(const BentSheet& sheet, std::span<const Vec3> rest) {
     const Index* n = &sheet.triangles[t];
     for (std::size_t k = 0; k < 3; ++k) {
       Edge& edge = edges[ends(n[k], n[(k + 1) % 3])];
-      if (edge.faces < 2) edge.across[edge.faces] = n[(k + 2) % 3];
+      (n[k] < n[(k + 1) % 3] ? edge.along : edge.against) = n[(k + 2) % 3];
       ++edge.faces;
     }
   }
   for (const auto& [end, edge] : edges) {
-    if (edge.faces <= 2) continue;
+    const bool crowded = edge.faces > 2;
+    if (!crowded && (edge.faces == 1 || (edge.along >= 0 && edge.against >= 0))) continue;
     const Vec3 middle = 0.5 * (rest[at(end[0])] + rest[at(end[1])]);
+    const std::string where =
+        "the edge around (" + number(middle.x) + ", " + number(middle.y) + ", " + number(middle.z) + ") m ";
+    if (!crowded)
+      return Error{where +
+                   "has faces that go round opposite ways, so that the sheet has no upper side; turn "
+                   "one of them over"};
     return Error{
-        "the edge around (" + std::to_string(middle.x) + ", " + std::to_string(middle.y) + ", " +
-        std::to_string(middle.z) + ") m belongs to " + std::to_string(edge.faces) +
+        where + "belongs to " + std::to_string(edge.faces) +
         " faces, and a sheet that bends has one or two at an edge; make each of the sheets that meet "
         "there a shell of its own"};
   }
@@ -115,14 +124,17 @@ Result<Bending> make_bending(const std::string& name, const BentSheet& sheet, st
   Index count = 0;
   for (auto& [end, edge] : edges) {
     if (edge.faces == 2) {
-      const std::array<Index, 4> nodes{end[0], end[1], edge.across[0], edge.across[1]};
+      const std::array<Index, 4> nodes{end[0], end[1], edge.along, edge.against};
       if (sheet.flat)
         hinges->add(nodes, rest, 0);
       else
         hinges->add(nodes, rest);
       edge.row = count++;
     } else if (sheet.clamped.contains(end[0]) && sheet.clamped.contains(end[1])) {
-      hinges->add_clamped({end[0], end[1], edge.across[0]}, rest);
+      if (edge.along >= 0)
+        hinges->add_clamped({end[0], end[1], edge.along}, rest);
+      else
+        hinges->add_clamped({end[1], end[0], edge.against}, rest);
       edge.row = count++;
       ++out.clamped_edges;
     }

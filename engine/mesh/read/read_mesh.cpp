@@ -10,6 +10,7 @@
 #include "engine/mesh/read/foreign_format.h"
 #include "engine/mesh/read/readers.h"
 #include "isochor/mesh_io.h"
+#include "isochor/solids.h"
 
 namespace isochor {
 
