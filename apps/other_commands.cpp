@@ -150,11 +150,11 @@ int keys(KeysAs as) {
   return success;
 }
 
-int check(const std::vector<std::string>& meshes, double scale, bool json) {
+int check(const std::vector<std::string>& meshes, double scale, bool triangles, bool json) {
   bool usable = true;
   Json all = Json::array();
   for (const std::string& path : meshes) {
-    const auto mesh = read_mesh(path, {scale});
+    const auto mesh = read_mesh(path, {scale, triangles});
     if (!mesh) {
       usable = false;
       if (json)

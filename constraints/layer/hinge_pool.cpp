@@ -97,71 +97,65 @@ std::array<Vec3, 4> HingePool::corners(Index edge, std::span<const Vec3> x) cons
   return {a, b, x[at(n[2])], n.size() == 4 ? x[at(n[3])] : 0.5 * (a + b) + ahead_[at(edge)]};
 }
 
+// moment phi'' + H phi' phi'^T, `slope` the phi'.
+void HingePool::write_hessian(Index s, const std::array<Vec3, 4>& x, std::span<const Vec3> slope,
+                              double moment, Mat3* block) const {
+  const std::size_t n = nodes_[s].size();
+  std::array<std::array<Mat3, 4>, 4> curve{};
+  add_curvature(Wing(x[0], x[1], x[2], 1), 1, 2, curve);
+  add_curvature(Wing(x[0], x[1], x[3], -1), -1, 3, curve);
+  if (is_clamped(s)) {
+    const auto add_half = [](const Mat3& from, Mat3& to) {
+      for (std::size_t i = 0; i < 9; ++i) to.m[i] += 0.5 * from.m[i];
+    };
+    for (std::size_t end = 0; end < 2; ++end) {
+      for (std::size_t b = 0; b < 4; ++b) add_half(curve[3][b], curve[end][b]);
+    }
+    for (std::size_t end = 0; end < 2; ++end) {
+      for (std::size_t a = 0; a < 3; ++a) add_half(curve[a][3], curve[a][end]);
+    }
+  }
+  const double k = moment * length_[at(s)];
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t b = 0; b <= a; ++b, ++block) {
+      for (int i = 0; i < 3; ++i) {
+        // The two faces are symmetric together; rounding is not.
+        for (int j = 0; j < 3; ++j) (*block)(i, j) = 0.5 * k * (curve[a][b](i, j) + curve[b][a](j, i));
+      }
+      add_outer(*block, stiffness_[at(s)], slope[a], slope[b]);
+    }
+  }
+}
+
 void HingePool::evaluate(const StencilRequest& request, const StencilSlots& slots) const {
   for (Index s = request.begin; s < request.end; ++s) {
     const std::size_t n = nodes_[s].size(), first = at(nodes_.offset[at(s)]);
     const Corners x = corners(s, request.x);
-    const Wing wing[2] = {Wing(x[0], x[1], x[2], 1), Wing(x[0], x[1], x[3], -1)};
+    const Wing one(x[0], x[1], x[2], 1), other(x[0], x[1], x[3], -1);
     // A face without area has no normal: outside the domain.
-    const bool inside = wing[0].ee > 0 && wing[0].nn > 0 && wing[1].nn > 0 && std::isfinite(wing[0].g.x) &&
-                        std::isfinite(wing[1].g.x);
-    const double phi = inside ? length_[at(s)] * (angle(wing[0], wing[1]) - natural_[at(s)]) : 0;
-    const double stiffness = stiffness_[at(s)];
+    const bool inside = one.ee > 0 && finite(one.g) && finite(other.g) && std::isfinite(angle(one, other));
+    const double phi = inside ? length_[at(s)] * (angle(one, other) - natural_[at(s)]) : 0;
     slots.value[at(s)] = phi;
-    slots.energy[at(s)] = inside ? 0.5 * stiffness * phi * phi : std::numeric_limits<double>::infinity();
+    slots.energy[at(s)] =
+        inside ? 0.5 * stiffness_[at(s)] * phi * phi : std::numeric_limits<double>::infinity();
     if (request.want == Want::value) continue;
     std::array<Vec3, 4> slope{};
     if (inside) {
-      const Vec3 g0 = length_[at(s)] * wing[0].g, g1 = length_[at(s)] * wing[1].g;
-      slope[0] = -((1 - wing[0].s) * g0) - (1 - wing[1].s) * g1;
-      slope[1] = -(wing[0].s * g0) - wing[1].s * g1;
-      slope[2] = g0;
-      slope[3] = g1;
+      const Vec3 g = length_[at(s)] * one.g, h = length_[at(s)] * other.g;
+      slope = {-((1 - one.s) * g) - (1 - other.s) * h, -(one.s * g) - other.s * h, g, h};
     }
     // The direction that a clamped face is held against rides on the middle of the edge.
-    const bool rides = n == 3;
-    if (rides) {
-      slope[0] += 0.5 * slope[3];
-      slope[1] += 0.5 * slope[3];
-    }
-    const double moment = stiffness * phi + request.function_multiplier[at(s)];
+    for (std::size_t end = 0; end < 2 && is_clamped(s); ++end) slope[end] += 0.5 * slope[3];
+    const double moment = stiffness_[at(s)] * phi + request.function_multiplier[at(s)];
     for (std::size_t a = 0; a < n; ++a) {
       slots.jacobian[first + a] = slope[a];
       slots.gradient[first + a] = moment * slope[a];
     }
     if (request.want != Want::hessian) continue;
     Mat3* block = slots.hessian.data() + hessian_offset()[at(s)];
-    if (!inside) {
-      std::fill_n(block, n * (n + 1) / 2, Mat3{});
-      continue;
-    }
-    std::array<std::array<Mat3, 4>, 4> curve{};
-    add_curvature(wing[0], 1, 2, curve);
-    add_curvature(wing[1], -1, 3, curve);
-    if (rides) {
-      for (std::size_t a = 0; a < 2; ++a) {
-        for (std::size_t i = 0; i < 9; ++i) {
-          for (std::size_t b = 0; b < 4; ++b) curve[a][b].m[i] += 0.5 * curve[3][b].m[i];
-        }
-      }
-      for (std::size_t b = 0; b < 2; ++b) {
-        for (std::size_t i = 0; i < 9; ++i) {
-          for (std::size_t a = 0; a < 3; ++a) curve[a][b].m[i] += 0.5 * curve[a][3].m[i];
-        }
-      }
-    }
-    const double k = moment * length_[at(s)];
-    for (std::size_t a = 0; a < n; ++a) {
-      for (std::size_t b = 0; b <= a; ++b) {
-        Mat3 h;
-        for (int i = 0; i < 3; ++i) {
-          // The two faces are symmetric together; rounding is not.
-          for (int j = 0; j < 3; ++j) h(i, j) = 0.5 * k * (curve[a][b](i, j) + curve[b][a](j, i));
-        }
-        add_outer(h, stiffness, slope[a], slope[b]);
-        block[a * (a + 1) / 2 + b] = h;
-      }
-    }
+    std::fill_n(block, n * (n + 1) / 2, Mat3{});
+    if (!inside) continue;
+    write_hessian(s, x, slope, moment, block);
     if (request.definiteness != Definiteness::exact) raise_negative_eigenvalues(n, block);
   }
 }

@@ -37,6 +37,8 @@ class HingePool final : public StencilPool {
 
  private:
   std::array<Vec3, 4> corners(Index edge, std::span<const Vec3> x) const;
+  void write_hessian(Index edge, const std::array<Vec3, 4>& x, std::span<const Vec3> slope, double moment,
+                     Mat3* block) const;
 
   std::string name_;
   bool clamped_ = false;

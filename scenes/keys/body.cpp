@@ -11,8 +11,8 @@ ISOCHOR_WORDS(CellType, ISOCHOR_WORD(CellType, tet4), ISOCHOR_WORD(CellType, tet
 void describe(Visitor& io, BoxMeshDef& b) {
   const BoxMeshDef d;
   io.about("box",
-           "A box of cells; surfaces x0, x1, y0, y1, z0, z1. Of `tri3` a sheet, flat along one axis, without "
-           "them.");
+           "A box of cells; surfaces x0, x1, y0, y1, z0, z1. Of `tri3` a sheet that is flat along one "
+           "axis; node sets have these names.");
   io.vector({"lower", "m", "corner"}, b.lower, d.lower);
   io.vector({"upper", "m", "corner"}, b.upper, d.upper);
   io.integers(Key("divisions", "", "cells a side, six tets each").least(1).absent("1, 1, 1"), b.divisions);

@@ -22,8 +22,8 @@ SceneDef thin_strip(const SceneVariant&) {
   s.bodies = {strip};
   s.analysis.steps = 4;
   Selection root, tip;
-  root.boxes = {{Vec3{-0.01, -1, -1}, Vec3{0.01, 2, 1}}};
-  tip.boxes = {{Vec3{9.99, -1, -1}, Vec3{10.01, 2, 1}}};
+  root.node_sets = {"x0"};
+  tip.node_sets = {"x1"};
   DirichletDef wall;
   wall.name = "wall";
   wall.where = root;

@@ -340,3 +340,26 @@ TEST_CASE("sheets are read from files of triangles") {
   CHECK_FALSE(read_mesh((folder / "a.msh").string()).ok());
   std::filesystem::remove_all(folder);
 }
+
+TEST_CASE("every method ends at the same deflection") {
+  double first = 0;
+  for (const Method method : {Method::saddle_point, Method::condensation, Method::dual_gradients,
+                              Method::augmented_gradients, Method::augmented_ascent}) {
+    WorldOptions options = test::static_options();
+    options.gravity = {0, 0, -10};
+    options.method = method;
+    options.max_iterations = 2000;
+    World world = test::make_world(options);
+    const BodyId body = test::add_sheet(world, test::unit_sheet(6, 6, 0.2));
+    ShellDef def = sheet_of(body, 1e8, 0.3, 0.02);
+    def.clamped = rim_of(body);
+    value(world.add(shell(def)));
+    test::hold_nodes(world, "rim", rim_of(body), {});
+    test::must_advance(world);
+    const double sag = test::displacement_at(world, body, {0.5, 0.5, 0}).z;
+    INFO("method " << static_cast<int>(method));
+    if (first == 0) first = sag;
+    CHECK(sag < -1e-4);
+    CHECK(sag == Approx(first).epsilon(1e-5));
+  }
+}

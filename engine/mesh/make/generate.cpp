@@ -75,6 +75,14 @@ Result<Mesh> sheet_mesh(const BoxMeshDef& def) {
       mesh.nodes.push_back(x);
     }
   }
+  for (const int axis : {first, second}) {
+    for (const int end : {0, 1}) {
+      MeshNodeSet side{std::string(1, "xyz"[axis]) + std::to_string(end), {}};
+      for (Index k = 0; k <= (axis == first ? m : n); ++k)
+        side.nodes.push_back(axis == first ? end * n + (n + 1) * k : k + (n + 1) * end * m);
+      mesh.node_sets.push_back(std::move(side));
+    }
+  }
   for (Index j = 0; j < m; ++j) {
     for (Index i = 0; i < n; ++i) {
       const Index a = i + (n + 1) * j, b = a + 1, c = b + n + 1, d = a + n + 1;

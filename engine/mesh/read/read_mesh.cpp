@@ -111,15 +111,15 @@ void take_triangles(RawMesh& raw) {
   flat.stray_lines = raw.stray_lines;
   for (const auto& [tag, quadrangles] : raw.quadrangles)
     flat.foreign_faces += static_cast<std::int64_t>(quadrangles.faces.size()) / quadrangles.width;
-  for (const auto& [tag, surface] : raw.surfaces) {
-    // Surfaces may share triangles: the first has them.
-    for (std::size_t f = 0; surface.width > 0 && f < surface.faces.size();
-         f += static_cast<std::size_t>(surface.width)) {
-      flat.cells.insert(flat.cells.end(), &surface.faces[f], &surface.faces[f] + 3);
+  const auto take = [&flat](std::int64_t tag, const std::vector<Index>& faces, int width) {
+    for (std::size_t f = 0; width > 0 && f < faces.size(); f += static_cast<std::size_t>(width)) {
+      flat.cells.insert(flat.cells.end(), &faces[f], &faces[f] + 3);
       flat.cell_tag.push_back(tag);
       flat.cell_label.push_back(static_cast<std::int64_t>(flat.cell_label.size()) + 1);
     }
-  }
+  };
+  take(no_tag, raw.loose_triangles, 3);
+  for (const auto& [tag, surface] : raw.surfaces) take(tag, surface.faces, surface.width);
   if (flat.cells.empty()) {
     throw ReadFailure{
         raw.file +
@@ -139,6 +139,10 @@ namespace {
 
 // Every region of a mesh of triangles is a surface, too.
 Mesh with_named_sheets(Mesh mesh) {
+  if (mesh.regions.size() == 1 && mesh.regions[0] == "unassigned") {
+    mesh.regions = {"body"};
+    return mesh;
+  }
   for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
     MeshSurface sheet{mesh.regions[r], {}};
     for (Index c = 0; c < mesh.cell_count(); ++c) {
