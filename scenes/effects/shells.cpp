@@ -5,6 +5,22 @@ namespace isochor {
 
 namespace keys {
 
+// A selection on the body of the shell.
+namespace {
+struct Rim {
+  Selection& where;
+};
+}  // namespace
+void describe(Visitor& io, Rim& rim) {
+  Selection& s = rim.where;
+  io.about("rim", "Nodes of the body that fit any of the criteria.");
+  io.names(surfaces_key, s.surfaces);
+  io.names({"node_sets", "", "of the mesh or of the body"}, s.node_sets);
+  io.indices({"nodes", "", "of the body's mesh, counted from 0"}, s.nodes);
+  io.boxes({"boxes", "m", "`[[lower, upper], ...]`, rest positions"}, s.boxes);
+  io.flag({"everything", "", "all nodes of the body"}, s.everything, false);
+}
+
 void describe(Visitor& io, ShellDef& s) {
   const ShellDef d;
   io.about(
@@ -21,11 +37,11 @@ void describe(Visitor& io, ShellDef& s) {
             s.density, d.density);
   io.number(Key("bending", "N m", "stiffness of a plate against bending; 0: that of a solid sheet").least(0),
             s.bending, d.bending);
-  io.settings(
-      {"clamped", "",
-       "edges at the rim with both ends there keep the direction in which the sheet leaves them; supports "
-       "hold nodes"},
-      s.clamped);
+  Rim rim{s.clamped};
+  io.settings({"clamped", "",
+               "edges at the rim with both ends there keep the direction in which the sheet leaves them; "
+               "supports hold nodes"},
+              rim);
   io.flag({"flat", "", "free of bending when flat, not as the mesh has it"}, s.flat, d.flat);
 }
 

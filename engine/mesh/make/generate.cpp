@@ -77,7 +77,8 @@ Result<Mesh> sheet_mesh(const BoxMeshDef& def) {
   }
   for (const int axis : {first, second}) {
     for (const int end : {0, 1}) {
-      MeshNodeSet side{std::string(1, "xyz"[axis]) + std::to_string(end), {}};
+      MeshNodeSet side;
+      side.name = {"xyz"[axis], "01"[end]};
       for (Index k = 0; k <= (axis == first ? m : n); ++k)
         side.nodes.push_back(axis == first ? end * n + (n + 1) * k : k + (n + 1) * end * m);
       mesh.node_sets.push_back(std::move(side));

@@ -51,7 +51,7 @@ struct ShellDef {
   // solid sheet, such as a fabric.
   double bending = 0;
   // Edges at the rim of which both ends are selected keep the direction in which the sheet leaves them:
-  // clamps, and planes of symmetry. Nodes are held by supports.
+  // clamps, and planes of symmetry. Nodes (of the same body) are held by supports.
   Selection clamped;
   bool flat = false;  // free of bending when flat, not as the mesh has it
 };
