@@ -7,7 +7,6 @@
 #include <map>
 
 #include "engine/base/text.h"
-#include "engine/math/triangle.h"
 #include "engine/mesh/cell_shape.h"
 
 namespace isochor {
@@ -112,23 +111,25 @@ Result<PointInBody> embed_in_hexahedra(const BodyData& body, std::span<const Vec
 
 namespace {
 
-// As embed(), of a thin body: the point of its triangles that is nearest, at most a twentieth of an edge
-// away.
+// As embed(), of a thin body: on the triangle that the point is least off, above or beside it, and at most by
+// a twentieth of an edge.
 Result<PointInBody> embed_in_sheet(const BodyData& body, std::span<const Vec3> rest, const Vec3& point,
                                    const std::string& who) {
-  constexpr double reach = 0.05;
-  double least = std::numeric_limits<double>::infinity();
+  double least = 0.05;
   std::map<Index, double> terms;
   for (std::size_t c = 0; c + 3 <= body.global_cells.size(); c += 3) {
     const Index* n = body.global_cells.data() + c;
-    const Vec3 &a = rest[at(n[0])], &b = rest[at(n[1])], &d = rest[at(n[2])];
-    const auto& w = nearest_on_triangle(point, a, b, d).weight;
-    const double distance = norm(point - (w[0] * a + w[1] * b + w[2] * d));
-    const double edge = std::max({norm(b - a), norm(d - b), norm(a - d)});
-    if (!(distance <= reach * edge) || !(distance < least)) continue;
-    least = distance;
+    const Vec3& o = rest[at(n[0])];
+    const Vec3 a = rest[at(n[1])] - o, b = rest[at(n[2])] - o, p = point - o, normal = cross(a, b);
+    const double square = dot(normal, normal), edge = std::max({norm(a), norm(b), norm(b - a)});
+    const double u = dot(cross(p, b), normal) / square, v = dot(cross(a, p), normal) / square;
+    const double above = std::abs(dot(p, normal)) / (std::sqrt(square) * edge);
+    const double off = above + std::max({0.0, -u, -v, u + v - 1});
+    if (!(off < least)) continue;
+    least = off;
     terms.clear();
-    for (std::size_t k = 0; k < 3; ++k) terms[n[k]] = std::abs(w[k]) < 1e-12 ? 0 : w[k];
+    const double weight[3] = {1 - u - v, u, v};
+    for (std::size_t k = 0; k < 3; ++k) terms[n[k]] = std::abs(weight[k]) < 1e-12 ? 0 : weight[k];
   }
   if (terms.empty()) return not_in_body(body, point, who);
   return sorted(terms);
