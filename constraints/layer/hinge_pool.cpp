@@ -28,7 +28,11 @@ struct Wing {
   }
 };
 
-double angle(const Wing& first, const Wing& second) {
+// The same instructions at rest and later, so that the difference at rest is exactly zero: inlined in two
+// places products may be fused in one and not in the other. NaN where a face or the edge has no size.
+[[gnu::noinline]] double angle(const Corners& x) {
+  const Wing first(x[0], x[1], x[2], 1), second(x[0], x[1], x[3], -1);
+  if (!(first.ee > 0) || !finite(first.g) || !finite(second.g)) return std::nan("");
   const Vec3 turn = cross(second.n, first.n);
   return std::atan2(dot(turn, first.e) / std::sqrt(first.ee), dot(first.n, second.n));
 }
@@ -76,8 +80,7 @@ void HingePool::add(std::array<Index, 4> nodes, std::span<const Vec3> rest, doub
   const Index edge = nodes_.count() - 1;
   const Corners x = corners(edge, rest);
   length_.push_back(norm(x[1] - x[0]));
-  natural_.push_back(std::isnan(natural) ? angle(Wing(x[0], x[1], x[2], 1), Wing(x[0], x[1], x[3], -1))
-                                         : natural);
+  natural_.push_back(std::isnan(natural) ? angle(x) : natural);
 }
 
 void HingePool::add_clamped(std::array<Index, 3> nodes, std::span<const Vec3> rest) {
@@ -88,7 +91,7 @@ void HingePool::add_clamped(std::array<Index, 3> nodes, std::span<const Vec3> re
   ahead_.push_back((dot(e, p) / dot(e, e)) * e - p);
   length_.push_back(norm(e));
   const Corners x = corners(nodes_.count() - 1, rest);
-  natural_.push_back(angle(Wing(x[0], x[1], x[2], 1), Wing(x[0], x[1], x[3], -1)));
+  natural_.push_back(angle(x));
 }
 
 std::array<Vec3, 4> HingePool::corners(Index edge, std::span<const Vec3> x) const {
@@ -131,16 +134,17 @@ void HingePool::evaluate(const StencilRequest& request, const StencilSlots& slot
   for (Index s = request.begin; s < request.end; ++s) {
     const std::size_t n = nodes_[s].size(), first = at(nodes_.offset[at(s)]);
     const Corners x = corners(s, request.x);
-    const Wing one(x[0], x[1], x[2], 1), other(x[0], x[1], x[3], -1);
     // A face without area has no normal: outside the domain.
-    const bool inside = one.ee > 0 && finite(one.g) && finite(other.g) && std::isfinite(angle(one, other));
-    const double phi = inside ? length_[at(s)] * (angle(one, other) - natural_[at(s)]) : 0;
+    const double theta = angle(x);
+    const bool inside = std::isfinite(theta);
+    const double phi = inside ? length_[at(s)] * (theta - natural_[at(s)]) : 0;
     slots.value[at(s)] = phi;
     slots.energy[at(s)] =
         inside ? 0.5 * stiffness_[at(s)] * phi * phi : std::numeric_limits<double>::infinity();
     if (request.want == Want::value) continue;
     std::array<Vec3, 4> slope{};
     if (inside) {
+      const Wing one(x[0], x[1], x[2], 1), other(x[0], x[1], x[3], -1);
       const Vec3 g = length_[at(s)] * one.g, h = length_[at(s)] * other.g;
       slope = {-((1 - one.s) * g) - (1 - other.s) * h, -(one.s * g) - other.s * h, g, h};
     }

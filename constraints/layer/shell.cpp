@@ -13,14 +13,31 @@ namespace isochor {
 
 namespace {
 
+// Which diagonal cuts a quadrangle, by places alone: the shorter one, and of equal ones that from the corner
+// that comes first in x, y and z. True: from its first corner.
+bool cut_from_first(std::span<const Index> q, std::span<const Vec3> rest) {
+  const Vec3 one = rest[at(q[2])] - rest[at(q[0])], other = rest[at(q[3])] - rest[at(q[1])];
+  const double difference = dot(one, one) - dot(other, other);
+  if (std::abs(difference) > 1e-9 * dot(one, one)) return difference < 0;
+  const auto before = [&](Index a, Index b) {
+    const Vec3 &x = rest[at(a)], &y = rest[at(b)];
+    return std::array{x.x, x.y, x.z} < std::array{y.x, y.y, y.z};
+  };
+  return (std::min_element(q.begin(), q.end(), before) - q.begin()) % 2 == 0;
+}
+
 // Flat triangles in place of faces: the four of six nodes, the two of a quadrangle.
-std::vector<Index> flat_triangles(std::span<const Index> faces, std::size_t per) {
+std::vector<Index> flat_triangles(std::span<const Index> faces, std::size_t per, std::span<const Vec3> rest) {
   if (per == 3) return {faces.begin(), faces.end()};
-  constexpr std::size_t kCurved[] = {0, 3, 5, 3, 1, 4, 5, 4, 2, 3, 4, 5}, kQuadrangle[] = {0, 1, 2, 0, 2, 3};
-  const auto parts = per == 6 ? std::span<const std::size_t>(kCurved) : kQuadrangle;
+  constexpr std::size_t kCurved[] = {0, 3, 5, 3, 1, 4, 5, 4, 2, 3, 4, 5}, kFirst[] = {0, 1, 2, 0, 2, 3},
+                        kSecond[] = {0, 1, 3, 1, 2, 3};
   std::vector<Index> triangles;
   for (std::size_t f = 0; f < faces.size(); f += per) {
-    for (const std::size_t k : parts) triangles.push_back(faces[f + k]);
+    const auto face = faces.subspan(f, per);
+    const auto parts = per == 6                     ? std::span<const std::size_t>(kCurved)
+                       : cut_from_first(face, rest) ? std::span<const std::size_t>(kFirst)
+                                                    : std::span<const std::size_t>(kSecond);
+    for (const std::size_t k : parts) triangles.push_back(face[k]);
   }
   return triangles;
 }
@@ -133,7 +150,8 @@ class ShellEffect final : public EffectSource {
     if (def_.surfaces.empty()) return body.global_cells;
     auto outward = outward_faces(builder, def_.body, def_.surfaces, "shell \"" + def_.name + "\"");
     if (!outward) return outward.failure();
-    return flat_triangles(outward.value(), static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type)));
+    return flat_triangles(outward.value(), static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type)),
+                          builder.rest());
   }
 
   ShellDef def_;

@@ -54,6 +54,7 @@ struct SceneCase {
   double stretch = 1;           // of the deformed sample, on top of its waves
   bool stress_free = true;      // no force and zero rows at rest with zero multipliers
   bool rigid_invariant = true;  // the potential does not see rigid motions
+  bool own_scale = false;  // metrics of rows are by constants of the author, not by the modulus of a body
   bool numbered_cells = false;  // has a field by cell number: renumbering cells makes another scene
   // Further bodies beside the first, of its element and materials.
   std::vector<isochor::Mesh> more_bodies = {};

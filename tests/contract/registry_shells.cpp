@@ -41,21 +41,24 @@ void add_shells(std::vector<SceneCase>& out) {
                 Element::tri3,
                 {},
                 {isochor::shell(sheet(poisson))}};
+    c.own_scale = true;
     out.push_back(c);
   }
   isochor::ShellDef held = sheet(0.3);
   held.clamped.boxes = {{Vec3{-0.2, -0.2, -1}, Vec3{0.2, 1.2, 1}}};
   SceneCase clamped{"thin body, clamped", covers, curved_sheet(), Element::tri3, {}, {isochor::shell(held)}};
   clamped.rigid_invariant = false;
+  clamped.own_scale = true;
   out.push_back(clamped);
   isochor::ShellDef flat = sheet(0.3);
   flat.flat = true;
   SceneCase bent{"thin body, flat by itself", covers, curved_sheet(), Element::tri3, {},
                  {isochor::shell(flat)}};
   bent.stress_free = false;
+  bent.own_scale = true;
   out.push_back(bent);
   isochor::ElasticConstants soft;
-  soft.mu = 1;
+  soft.young = 2.6;
   soft.poisson = 0.3;
   for (const auto& [element, type] : {std::pair(Element::tet4, CellType::tet4),
                                       {Element::tet10, CellType::tet10},
@@ -69,6 +72,7 @@ void add_shells(std::vector<SceneCase>& out) {
                 element,
                 {{"", isochor::neo_hookean(soft).value(), 1000}},
                 {isochor::shell(layer)}};
+    c.own_scale = true;
     out.push_back(c);
   }
 }
