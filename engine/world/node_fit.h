@@ -38,8 +38,9 @@ class NodeFit {
     if (!(s.volume > 0)) return Values::Zero();
     const Eigen::Vector3d mean = s.first / s.volume;
     Eigen::Matrix3d spread = s.second - s.first * mean.transpose();
-    // Directions without spread keep slope zero; the others lose a millionth of theirs.
-    spread.diagonal().array() += 1e-6 * spread.trace() + 1e-300;
+    // Directions without spread keep slope zero, also where rounding leaves some, as of a single point; the
+    // others lose a millionth of theirs.
+    spread.diagonal().array() += 1e-6 * spread.trace() + 1e-9 * s.second.trace() + 1e-300;
     const Eigen::Matrix<double, 3, Components> slope =
         spread.ldlt().solve(s.moment - mean * s.value.transpose());
     return s.value / s.volume - slope.transpose() * mean;
