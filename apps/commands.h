@@ -128,7 +128,7 @@ int list(bool json);
 // Every key of a scene file: for a terminal, as JSON Schema, or as the tables of docs/scenes.md.
 enum class KeysAs { lines, schema, tables };
 int keys(KeysAs as);
-int check(const std::vector<std::string>& meshes, double scale, bool json);
+int check(const std::vector<std::string>& meshes, double scale, bool triangles, bool json);
 int version(bool json);
 
 }  // namespace isochor::app

@@ -204,6 +204,8 @@ int dispatch(int argc, char** argv) {
   check->add_option("mesh", meshes, "Mesh files (.msh, .vtk, .vtu, .node/.ele, .mesh)")->required();
   check->add_option("--scale", scale, "Multiplies coordinates: 1e-3 for millimeters")
       ->check(CLI::PositiveNumber);
+  bool triangles = false;
+  check->add_flag("--triangles", triangles, "Its triangles are the cells, of a thin body; also of .obj and .stl");
   check->add_flag("--json", json, "As JSON");
   CLI::App* show = top.add_subcommand("show", "Print a scene as a scene file, a start for one of your own");
   show->add_option("scene", scene, "Name of a scene or a scene file")->required();
@@ -225,7 +227,7 @@ int dispatch(int argc, char** argv) {
     return top.exit(e) == 0 ? app::success : app::bad_input;
   }
   if (list->parsed()) return app::list(json);
-  if (check->parsed()) return app::check(meshes, scale, json);
+  if (check->parsed()) return app::check(meshes, scale, triangles, json);
   if (show->parsed()) return app::show(scene, overrides);
   if (keys->parsed()) {
     return app::keys(schema ? app::KeysAs::schema : tables ? app::KeysAs::tables : app::KeysAs::lines);

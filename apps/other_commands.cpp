@@ -85,7 +85,8 @@ void print_sets(const Mesh& mesh) {
 }
 
 const char* cell_name(CellType type) {
-  return type == CellType::tet10 ? "Tet10" : (type == CellType::hex8 ? "Hex8" : "Tet4");
+  constexpr const char* names[] = {"Tet4", "Tet10", "Hex8", "Tri3"};
+  return names[static_cast<int>(type)];
 }
 
 // What every body has without a group of its mesh.
@@ -149,11 +150,11 @@ int keys(KeysAs as) {
   return success;
 }
 
-int check(const std::vector<std::string>& meshes, double scale, bool json) {
+int check(const std::vector<std::string>& meshes, double scale, bool triangles, bool json) {
   bool usable = true;
   Json all = Json::array();
   for (const std::string& path : meshes) {
-    const auto mesh = read_mesh(path, {scale});
+    const auto mesh = read_mesh(path, {scale, triangles});
     if (!mesh) {
       usable = false;
       if (json)

@@ -45,7 +45,12 @@ Result<void> check_mesh_file(const std::string& where, const MeshFile& file) {
 }  // namespace
 
 Result<void> check_body(const std::string& where, const SceneBody& body) {
-  if (body.materials.empty()) return Error{where + ".materials is empty; give the body a material"};
+  const bool thin = body.element == Element::tri3;
+  if (!thin && body.materials.empty()) return Error{where + ".materials is empty; give the body a material"};
+  if (thin && !body.materials.empty())
+    return Error{where +
+                 ".materials: a thin body (element \"tri3\") takes none; give it a shell in \"shells\", "
+                 "which has its own modulus, thickness and density"};
   if (const auto* lattice = std::get_if<LatticeMesh>(&body.mesh))
     return check_lattice(where + ".mesh.lattice", *lattice, body.element);
   if (const auto* file = std::get_if<MeshFile>(&body.mesh)) return check_mesh_file(where + ".mesh", *file);

@@ -58,6 +58,8 @@ const char* element_name(Element e) {
       return "edge-smoothed Tet4";
     case Element::tet10:
       return "Tet10";
+    case Element::tri3:
+      return "thin, of triangles";
     default:
       return "element";
   }

@@ -37,6 +37,8 @@ constexpr auto kScenes = std::to_array<LibraryScene>({
     {"indented_puck", "Incompressible puck indented by a sphere", indented_puck},
     {"bellows", "Bellows that folds onto itself as air is drawn out", bellows},
     {"colliding_balls", "Two incompressible balls that collide off center", colliding_balls},
+    {"thin_strip", "Thin strip bent by a force at its end", thin_strip},
+    {"paper_strip", "Soft strip that swells on a sheet of paper and curls", paper_strip},
 });
 
 }  // namespace

@@ -55,5 +55,7 @@ SceneDef gripper(const SceneVariant& variant = {});
 SceneDef indented_puck(const SceneVariant& variant = {});
 SceneDef bellows(const SceneVariant& variant = {});
 SceneDef colliding_balls(const SceneVariant& variant = {});
+SceneDef thin_strip(const SceneVariant& variant = {});
+SceneDef paper_strip(const SceneVariant& variant = {});
 
 }  // namespace isochor

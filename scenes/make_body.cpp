@@ -20,7 +20,7 @@ Result<Mesh> make_mesh(const SceneBody& body, const std::string& folder, Display
   }
   if (const auto* box = std::get_if<BoxMeshDef>(&body.mesh)) return box_mesh(*box);
   const auto& file = std::get<MeshFile>(body.mesh);
-  auto mesh = read_mesh(path_in(folder, file.path), {file.scale});
+  auto mesh = read_mesh(path_in(folder, file.path), {file.scale, body.element == Element::tri3});
   if (mesh) {
     const double angle = std::sqrt(dot(file.turn, file.turn)), c = std::cos(angle), s = std::sin(angle);
     const Vec3 axis = angle > 0 ? (1 / angle) * file.turn : Vec3{};

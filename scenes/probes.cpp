@@ -62,6 +62,27 @@ MaterialPoint in_cell(const Mesh& mesh, const Index* cell, const std::array<doub
   return p;
 }
 
+// The triangle that the point lies on, or is above or below by no more than `reach`.
+MaterialPoint locate_on_sheet(const Mesh& mesh, const Vec3& point, double reach) {
+  MaterialPoint found;
+  double inside = -1e-6;
+  for (std::size_t c = 0; c + 3 <= mesh.cells.size(); c += 3) {
+    const Index* n = mesh.cells.data() + c;
+    const Vec3& o = mesh.nodes[index(n[0])];
+    const Vec3 a = mesh.nodes[index(n[1])] - o, b = mesh.nodes[index(n[2])] - o, p = point - o;
+    const Vec3 normal = cross(a, b);
+    const double square = dot(normal, normal);
+    const double u = dot(cross(p, b), normal) / square, v = dot(cross(a, p), normal) / square;
+    const double least = std::min({u, v, 1 - u - v});
+    if (!(least > inside) || !(std::abs(dot(p, normal)) <= reach * std::sqrt(square))) continue;
+    inside = least;
+    found.count = 3;
+    std::copy(n, n + 3, found.nodes.begin());
+    found.weights = {1 - u - v, u, v};
+  }
+  return found;
+}
+
 }  // namespace
 
 Vec3 MaterialPoint::at(std::span<const Vec3> positions) const {
@@ -92,6 +113,12 @@ MaterialPoint locate(const Mesh& mesh, const Vec3& point) {
   }
   const double size = std::sqrt(dot(upper - lower, upper - lower));
   if (std::sqrt(best) <= 1e-9 * size) return nearest;
+  if (mesh.cell_type == CellType::tri3) {
+    const MaterialPoint on_sheet = locate_on_sheet(mesh, point, 1e-6 * size);
+    if (on_sheet.count > 0) return on_sheet;
+    nearest.distance = std::sqrt(best);
+    return nearest;
+  }
   const auto stride = index(nodes_per_cell(mesh.cell_type));
   // Curved surfaces are cut by flat faces: a point a little outside is extrapolated from the cell below it.
   double inside = -0.25;

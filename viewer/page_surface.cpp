@@ -14,6 +14,7 @@ struct TetFace {
   std::array<int, 3> corner;
   std::array<int, 3> middle;
 };
+constexpr TetFace triangle_face = {{0, 1, 2}, {}};
 constexpr std::array<TetFace, 4> tet_faces = {{
     {{0, 2, 1}, {6, 5, 4}},
     {{0, 1, 3}, {4, 8, 7}},
@@ -65,13 +66,14 @@ std::vector<Face> boundary_faces(const Mesh& mesh) {
   for (Index cell = 0; cell < mesh.cell_count(); ++cell) {
     const Index* nodes = &mesh.cells[static_cast<std::size_t>(cell) * stride];
     const bool hexahedral = mesh.cell_type == CellType::hex8;
-    for (int side = 0; side < (hexahedral ? 6 : 4); ++side) {
+    const bool thin = mesh.cell_type == CellType::tri3;
+    for (int side = 0; side < (hexahedral ? 6 : (thin ? 1 : 4)); ++side) {
       std::array<Index, 4> key = {-1, -1, -1, -1};
       if (hexahedral) {
         const auto& c = hex_faces[static_cast<std::size_t>(side)];
         for (std::size_t k = 0; k < 4; ++k) key[k] = nodes[c[k]];
       } else {
-        const auto& c = tet_faces[static_cast<std::size_t>(side)].corner;
+        const auto& c = (thin ? triangle_face : tet_faces[static_cast<std::size_t>(side)]).corner;
         for (std::size_t k = 0; k < 3; ++k) key[k] = nodes[c[k]];
       }
       std::sort(key.begin(), key.end());
@@ -129,7 +131,8 @@ std::vector<Index> add_page_mesh(PageScene& scene, const Mesh& mesh, const PageP
     scene.triangle_part.push_back(part_index);
     scene.triangle_edges.push_back(edges);
   };
-  const bool quadratic = mesh.cell_type == CellType::tet10, hexahedral = mesh.cell_type == CellType::hex8;
+  const bool quadratic = mesh.cell_type == CellType::tet10, hexahedral = mesh.cell_type == CellType::hex8,
+             thin = mesh.cell_type == CellType::tri3;
   const std::size_t stride = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
   const auto owned = [&](Index cell, std::size_t from) {
     if (options.triangle_cell)
@@ -146,7 +149,7 @@ std::vector<Index> add_page_mesh(PageScene& scene, const Mesh& mesh, const PageP
       owned(face.cell, before);
       continue;
     }
-    const TetFace& local = tet_faces[static_cast<std::size_t>(face.side)];
+    const TetFace& local = thin ? triangle_face : tet_faces[static_cast<std::size_t>(face.side)];
     const auto corner = [&](std::size_t k) { return nodes[local.corner[k]]; };
     const auto middle = [&](std::size_t k) { return nodes[local.middle[k]]; };
     if (!quadratic) {
@@ -162,7 +165,7 @@ std::vector<Index> add_page_mesh(PageScene& scene, const Mesh& mesh, const PageP
     owned(face.cell, before);
   }
 
-  if (options.cells) {
+  if (options.cells && !thin) {
     for (Index cell = 0; cell < mesh.cell_count(); ++cell) {
       const Index* nodes = &mesh.cells[static_cast<std::size_t>(cell) * stride];
       const auto put = [&](const auto& local) {

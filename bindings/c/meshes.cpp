@@ -106,9 +106,9 @@ void MeshView::show(const Mesh& from) {
 
 Mesh mesh_from(const iso_mesh* pointer) {
   const iso_mesh m = taken(pointer, "mesh");
-  if (m.cell_type < ISO_TET4 || m.cell_type > ISO_HEX8)
+  if (m.cell_type < ISO_TET4 || m.cell_type > ISO_TRI3)
     refuse("mesh->cell_type = " + std::to_string(m.cell_type) +
-           "; it must be ISO_TET4, ISO_TET10 or ISO_HEX8");
+           "; it must be ISO_TET4, ISO_TET10, ISO_HEX8 or ISO_TRI3");
   Mesh mesh;
   mesh.cell_type = static_cast<CellType>(m.cell_type);
   mesh.nodes = vectors(m.points, m.point_count, m.point_stride, "mesh->points");
@@ -148,8 +148,8 @@ extern "C" iso_status iso_mesh_box(const double lower[3], const double upper[3],
   Buffer said(message, message_size);
   return caught("iso_mesh_box", said, [&] {
     (void)given(out, "out");
-    if (cell_type != ISO_TET4 && cell_type != ISO_HEX8)
-      refuse("cell_type = " + std::to_string(cell_type) + "; it must be ISO_TET4 or ISO_HEX8");
+    if (cell_type != ISO_TET4 && cell_type != ISO_HEX8 && cell_type != ISO_TRI3)
+      refuse("cell_type = " + std::to_string(cell_type) + "; it must be ISO_TET4, ISO_HEX8 or ISO_TRI3");
     (void)given(divisions, "divisions");
     BoxMeshDef box;
     box.lower = vector(lower, "lower");

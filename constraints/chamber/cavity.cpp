@@ -84,6 +84,30 @@ Result<void> orient(const BodyData& body, std::vector<Face>& faces, std::span<co
   return {};
 }
 
+// Turns the faces of a thin body, which all go round one way, so that they look out of what they enclose.
+Result<void> orient_sheet(const BodyData& body, std::vector<Face>& faces, std::span<const Vec3> rest,
+                          const std::string& who) {
+  Vec3 middle{};
+  for (const Face& f : faces) {
+    for (const Index n : f) middle += (1.0 / static_cast<double>(3 * faces.size())) * rest[at(n)];
+  }
+  double volume = 0, size = 0;
+  for (const Face& f : faces) {
+    const double cone = dot(cross(rest[at(f[0])] - middle, rest[at(f[1])] - middle), rest[at(f[2])] - middle);
+    volume += cone;
+    size += std::abs(cone);
+  }
+  if (!(std::abs(volume) > 1e-6 * size)) {
+    return Error{
+        who + "the faces of the thin body \"" + body.name +
+        "\" are flat or as much bent one way as the other, so that it is not known which side of them "
+        "the chamber is on; close the surface"};
+  }
+  if (volume < 0)
+    for (Face& f : faces) flip(f);
+  return {};
+}
+
 // Boundary loops of the oriented faces: corner nodes in order, with the mid-edge node after each corner for
 // Tet10.
 //
@@ -404,7 +428,10 @@ class CavityEffect final : public EffectSource {
       const auto first = list.value().begin() + static_cast<std::ptrdiff_t>(f);
       faces.emplace_back(first, first + static_cast<std::ptrdiff_t>(per));
     }
-    if (auto r = orient(body, faces, builder.rest(), who()); !r) return r.failure();
+    if (auto r = body.thin() ? orient_sheet(body, faces, builder.rest(), who())
+                             : orient(body, faces, builder.rest(), who());
+        !r)
+      return r.failure();
     Vec3 origin{};
     for (const Face& f : faces)
       origin += (1.0 / static_cast<double>(faces.size())) * builder.rest()[at(f[0])];

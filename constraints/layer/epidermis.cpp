@@ -5,6 +5,7 @@
 #include "constraints/layer/face_strain.h"
 #include "engine/base/text.h"
 #include "engine/scene/builder.h"
+#include "engine/scene/embedding.h"
 #include "isochor/effects/layer.h"
 
 namespace isochor {
@@ -116,8 +117,7 @@ class EpidermisEffect final : public EffectSource {
     const auto per_face = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
     const auto faces = distinct_faces(named.value(), per_face);
     const auto pool = std::make_shared<AreaPool>(def_.name, per_face, faces, builder.rest(), def_.gamma);
-    double mu = 0;
-    for (const RegionData& r : body.regions) mu = std::max(mu, r.material->shear_modulus());
+    const double mu = stiffest(body);
     auto rows = std::make_shared<AreaRows>(def_.name);
     rows->stencil_pool = builder.add_stencils(pool);
     const double compliance = inverse_stiffness();

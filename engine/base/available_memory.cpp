@@ -43,6 +43,7 @@ std::string size_text(double bytes) {
 // factorization, whose fill comes on top; of a check the faces that it sorts.
 double bytes_per_cell(CellType type, MeshUse use) {
   const bool check = use == MeshUse::check;
+  if (type == CellType::tri3) return check ? 150 : 3000;
   if (type == CellType::hex8) return check ? 250 : 15000;
   if (type == CellType::tet10) return check ? 200 : 19000;
   return check ? 150 : 2400;
@@ -71,7 +72,10 @@ std::string too_large_for_memory(double cells, CellType type, MeshUse use) {
   if (need <= left) return {};
   char count[32];
   std::snprintf(count, sizeof count, "%.0f", cells);
-  return std::string("the mesh has ") + count + (type == CellType::hex8 ? " hexahedra" : " tetrahedra") +
+  return std::string("the mesh has ") + count +
+         (type == CellType::hex8   ? " hexahedra"
+          : type == CellType::tri3 ? " triangles"
+                                   : " tetrahedra") +
          ", which take at least " + size_text(need) + " of memory, and " + size_text(left) +
          " are free; use a coarser mesh, or a machine with more memory";
 }

@@ -123,6 +123,11 @@ const ReferenceElement& tet10_element() {
   return element;
 }
 
+const ReferenceElement& tri3_element() {
+  static const ReferenceElement element{3, 0, {}, {}, {}, {}, 3};
+  return element;
+}
+
 const ReferenceElement& hex8_element() {
   static const ReferenceElement element = make_hex8();
   return element;

@@ -22,6 +22,8 @@ const ReferenceElement& tet10_element();  // 14 points, exact to degree 5 (Walki
 const ReferenceElement&
 hex8_element();  // 2 x 2 x 2 Gauss points on [-1, 1]^3, exact to degree 3 in each direction
 
+const ReferenceElement& tri3_element();  // of thin bodies: corners, and no points in a volume
+
 // Which volume functions a stencil offers.
 enum class VolumeFunctions : std::uint8_t {
   none,

@@ -30,8 +30,11 @@ inline constexpr CellShape kHexShape{
     {{{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}}},
     {{{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}}}};
 
+// The one side of a triangle is what it shows on top.
+inline constexpr CellShape kTriShape{3, 1, 3, 3, {{{0, 1, 2}}}, {{{0, 1}, {1, 2}, {2, 0}}}};
+
 constexpr const CellShape& cell_shape(CellType type) {
-  return type == CellType::hex8 ? kHexShape : kTetShape;
+  return type == CellType::tri3 ? kTriShape : (type == CellType::hex8 ? kHexShape : kTetShape);
 }
 
 // Corner a of a hexahedron lies at xi_k = +1 where the sign is +1, at -1 elsewhere.

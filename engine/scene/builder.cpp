@@ -86,6 +86,13 @@ std::string unknown_name(const std::string& who, const std::string& what, const 
 
 Result<void> Builder::add_regions(const BodyDef& def, BodyData& body) const {
   const Mesh& mesh = body.mesh;
+  if (mesh.cell_type == CellType::tri3) {
+    if (def.materials.empty()) return {};
+    return Error{
+        "body \"" + def.name +
+        "\": it is thin (element \"tri3\") and takes no materials; give it a shell, which has its own "
+        "modulus, thickness and density"};
+  }
   std::vector<std::string> names = mesh.regions;
   if (names.empty()) names = {"body"};
   for (std::size_t i = 0; i < def.materials.size(); ++i) {
@@ -135,6 +142,18 @@ namespace {
 
 // Whether the cells of the mesh can carry the element.
 Result<void> check_element(const BodyDef& def) {
+  const bool triangles = def.mesh.cell_type == CellType::tri3;
+  if (triangles && def.element != Element::tri3) {
+    return Error{"body \"" + def.name +
+                 "\": a mesh of triangles needs element \"tri3\", a thin body; give a mesh of tetrahedra or "
+                 "hexahedra for a solid one"};
+  }
+  if (!triangles && def.element == Element::tri3) {
+    return Error{
+        "body \"" + def.name +
+        "\": element \"tri3\" is for thin bodies and needs a mesh of triangles; read the file with its "
+        "triangles as cells, or choose an element for solids"};
+  }
   const bool hexahedra = def.mesh.cell_type == CellType::hex8;
   if (hexahedra && def.element != Element::hex8) {
     return Error{"body \"" + def.name +
@@ -195,7 +214,9 @@ Result<Index> Builder::add_body(const BodyDef& def) {
     body.mesh = to_tet10(body.mesh);
     body.reference = &tet10_element();
   } else {
-    body.reference = def.element == Element::hex8 ? &hex8_element() : &tet4_element();
+    body.reference = def.element == Element::hex8   ? &hex8_element()
+                     : def.element == Element::tri3 ? &tri3_element()
+                                                    : &tet4_element();
   }
   if (auto r = add_regions(def, body); !r) return r.failure();
   return take_body(std::move(body), doubtful_units);
@@ -350,6 +371,9 @@ Result<std::vector<std::size_t>> Builder::regions(BodyId id, std::span<const std
                                                   const std::string& who) const {
   if (!has_body(id)) return Error{who + ": " + no_body(id)};
   const BodyData& b = body(id);
+  if (b.thin())
+    return Error{who + ": body \"" + b.name +
+                 "\" is thin and has no regions with a volume; name a solid body"};
   std::vector<std::size_t> found;
   std::vector<std::string> known;
   for (const auto& r : b.regions) known.push_back(r.name);
@@ -477,6 +501,12 @@ Index Builder::add_point(const Vec3& rest, double mass) {
   return static_cast<Index>(parts_.rest.size()) - 1;
 }
 
+void Builder::add_mass(Index node, double mass) {
+  parts_.mass[at(node)] += mass;
+  lent_mass_.resize(parts_.mass.size(), 0);
+  lent_mass_[at(node)] += mass;
+}
+
 Index Builder::add_rows(std::shared_ptr<const RowPool> pool) {
   parts_.row_pools.push_back(std::move(pool));
   owners_.row_pool.push_back(owner_);
@@ -548,6 +578,7 @@ Result<SystemParts> Builder::finish(bool needs_anchors) {
       if (nodes.empty() || nodes.back() != i) nodes.push_back(i);
     }
   }
+  if (auto r = check_thin_bodies(facts); !r) return r.failure();
   if (needs_anchors) {
     if (auto r = check_anchored(facts); !r) return r.failure();
   }

@@ -199,9 +199,12 @@ struct BodyData {
   double guard_threshold = 0.5;
   std::optional<double> guard_stiffness;
   std::vector<Index> global_cells;    // mesh.cells with scene node numbers
+  double lent_modulus = 0;            // shear modulus of what makes a thin body stiff [Pa]
   std::vector<std::string> warnings;  // about its mesh
 
   bool present() const { return reference != nullptr; }  // false: a place that is free
+  // Made of triangles: no regions, and no stiffness or mass but what effects give it.
+  bool thin() const { return present() && mesh.cell_type == CellType::tri3; }
 };
 
 // A displacement over time, shared by the nodes it moves.
@@ -306,6 +309,15 @@ class ISOCHOR_API Builder {
   void use_consistent_mass() { consistent_mass_ = true; }
   // A node that belongs to no body, with its mass [kg]; for effects with unknowns of their own.
   Index add_point(const Vec3& rest, double mass);
+  // Mass that an effect lends to a node [kg], beside that of the body.
+  void add_mass(Index node, double mass);
+  // Says, while effects declare, what a thin body is made of; the stiffest counts.
+  void lend_modulus(BodyId id, double shear_modulus) {
+    double& mu = bodies_[static_cast<std::size_t>(id)].lent_modulus;
+    mu = std::max(mu, shear_modulus);
+  }
+  // All that add_mass() was given, by node; empty: nothing.
+  std::span<const double> lent_mass() const { return lent_mass_; }
   // Whether the scene is for statics, where nothing has inertia.
   bool quasi_static() const { return quasi_static_; }
   void set_quasi_static(bool on) { quasi_static_ = on; }
@@ -354,6 +366,7 @@ class ISOCHOR_API Builder {
   std::map<std::string, std::shared_ptr<void>> shared_;
   Index owner_ = -1;  // effect being built
   std::uint64_t world_ = 0;
+  std::vector<double> lent_mass_;
   bool consistent_mass_ = false;
   bool quasi_static_ = false;
 };

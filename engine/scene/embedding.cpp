@@ -109,10 +109,39 @@ Result<PointInBody> embed_in_hexahedra(const BodyData& body, std::span<const Vec
 
 }  // namespace
 
+namespace {
+
+// As embed(), of a thin body: on the triangle that the point is least off, above or beside it, and at most by
+// a twentieth of an edge.
+Result<PointInBody> embed_in_sheet(const BodyData& body, std::span<const Vec3> rest, const Vec3& point,
+                                   const std::string& who) {
+  double least = 0.05;
+  std::map<Index, double> terms;
+  for (std::size_t c = 0; c + 3 <= body.global_cells.size(); c += 3) {
+    const Index* n = body.global_cells.data() + c;
+    const Vec3& o = rest[at(n[0])];
+    const Vec3 a = rest[at(n[1])] - o, b = rest[at(n[2])] - o, p = point - o, normal = cross(a, b);
+    const double square = dot(normal, normal), edge = std::max({norm(a), norm(b), norm(b - a)});
+    const double u = dot(cross(p, b), normal) / square, v = dot(cross(a, p), normal) / square;
+    const double above = std::abs(dot(p, normal)) / (std::sqrt(square) * edge);
+    const double off = above + std::max({0.0, -u, -v, u + v - 1});
+    if (!(off < least)) continue;
+    least = off;
+    terms.clear();
+    const double weight[3] = {1 - u - v, u, v};
+    for (std::size_t k = 0; k < 3; ++k) terms[n[k]] = std::abs(weight[k]) < 1e-12 ? 0 : weight[k];
+  }
+  if (terms.empty()) return not_in_body(body, point, who);
+  return sorted(terms);
+}
+
+}  // namespace
+
 Result<PointInBody> embed(const BodyData& body, std::span<const Vec3> rest, const Vec3& point,
                           const std::string& who) {
   const auto per = static_cast<std::size_t>(nodes_per_cell(body.mesh.cell_type));
   if (body.mesh.cell_type == CellType::hex8) return embed_in_hexahedra(body, rest, point, who);
+  if (body.thin()) return embed_in_sheet(body, rest, point, who);
   double inside = -std::numeric_limits<double>::infinity();
   const Index* cell = nullptr;
   std::array<double, 4> l{};
@@ -149,7 +178,7 @@ PointInBody difference(const PointInBody& first, const PointInBody& second) {
 }
 
 double stiffest(const BodyData& body) {
-  double mu = 0;
+  double mu = body.lent_modulus;
   for (const RegionData& r : body.regions) mu = std::max(mu, r.material->shear_modulus());
   return mu;
 }

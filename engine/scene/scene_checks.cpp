@@ -146,6 +146,22 @@ void add_rigid_response(const SceneFacts& facts, const StencilPool& pool, std::s
 
 }  // namespace
 
+Result<void> check_thin_bodies(const SceneFacts& facts) {
+  for (const BodyData& body : facts.bodies) {
+    if (!body.thin()) continue;
+    const auto mass =
+        std::span<const double>(facts.parts.mass).subspan(at(body.first_node), body.mesh.nodes.size());
+    const auto bare = std::count_if(mass.begin(), mass.end(), [](double m) { return !(m > 0); });
+    if (bare == 0) continue;
+    const bool all = bare == static_cast<std::ptrdiff_t>(mass.size());
+    return Error{
+        "body \"" + body.name + "\": it is thin, and " +
+        (all ? std::string("no shell is") : std::to_string(bare) + " of its nodes are without a shell") +
+        " on it; add a shell, on all of its surfaces"};
+  }
+  return {};
+}
+
 Result<void> check_anchored(const SceneFacts& facts) {
   Index count = 0;
   const std::vector<Index> part = connected_parts(facts, count);

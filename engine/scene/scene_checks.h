@@ -19,6 +19,9 @@ struct SceneFacts {
 // are tied together count as one.
 std::vector<Index> connected_parts(const SceneFacts& facts, Index& count);
 
+// Thin bodies have no mass and no stiffness but that of shells.
+Result<void> check_thin_bodies(const SceneFacts& facts);
+
 // Statics: every connected part must be held against its six rigid motions.
 Result<void> check_anchored(const SceneFacts& facts);
 

@@ -266,6 +266,9 @@ void recover_nodes(const RecoveryInput& in, std::vector<CellState>& cells, BodyF
 
 BodyFields recover_fields(const RecoveryInput& in) {
   std::vector<CellState> cells(at(in.body.mesh.cell_count()));
+  // Of thin bodies positions alone are known here.
+  if (in.body.thin())
+    for (CellState& cell : cells) cell.J = cell.stretch = 1;
   BodyFields f;
   recover_nodes(in, cells, f);
   for (const CellState& cell : cells) {
@@ -284,6 +287,7 @@ BodyFields recover_fields(const RecoveryInput& in) {
 
 BodyMeasures measure_body(const BodyData& body, const SystemParts& parts, std::span<const Vec3> x) {
   BodyMeasures m;
+  if (body.thin()) m.min_J = m.max_J = 1;
   const auto extend = [](VolumeMeasures& all, double volume, double rest, double low, double high) {
     const bool first = all.rest_volume == 0;
     all.volume += volume;

@@ -330,6 +330,10 @@ std::vector<double> gravity_mass(const Builder& builder, const SystemParts& part
     for (const RegionData& region : body.regions) {
       add_nodal_volume(*body.reference, parts.rest, body.global_cells, region.cells, region.density, weight);
     }
+    const auto lent = builder.lent_mass();
+    for (std::size_t i = at(body.first_node);
+         i < std::min(at(body.first_node) + body.mesh.nodes.size(), lent.size()); ++i)
+      weight[i] += lent[i];
   }
   return weight;
 }

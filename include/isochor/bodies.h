@@ -17,6 +17,7 @@ enum class Element : std::uint8_t {
   tet4_edge_smoothed,  // energy on patches around edges: the default for accuracy per second
   tet10,               // quadratic displacements; the mesh is raised to Tet10 where it is Tet4
   hex8,                // trilinear hexahedra with eight points; needs a Hex8 mesh
+  tri3,                // a thin body of triangles; stiffness and mass are those of shells on it (ShellDef)
 };
 
 struct RegionMaterial {
@@ -29,7 +30,7 @@ struct BodyDef {
   std::string name = "body";
   Mesh mesh;
   Element element = Element::tet4_edge_smoothed;
-  std::vector<RegionMaterial> materials;
+  std::vector<RegionMaterial> materials;  // none on a thin body, whose shells have their own
   // Barrier against single tets turning over, edge-smoothed bodies only: energy -stiffness mu V
   // log^3(J/threshold) for J < threshold. 0 switches it off. By default 1, with a threshold of at most 0.1
   // where nu < 0.49, whose true compression it would falsify.

@@ -10,7 +10,9 @@
 namespace isochor {
 
 // A box of nx * ny * nz hexahedra, or of as many cells cut into six tets each (Kuhn), all diagonals parallel.
-// Surfaces "x0", "x1", "y0", "y1", "z0", "z1" are its sides; its one region is "body".
+// Surfaces "x0", "x1", "y0", "y1", "z0", "z1" are its sides; its one region is "body". Of triangles a sheet
+// that is flat along one axis, cut into a checkerboard, its upper side along that axis; its sides are node
+// sets.
 struct BoxMeshDef {
   Vec3 lower{0, 0, 0}, upper{1, 1, 1};  // [m]
   std::array<int, 3> divisions{1, 1, 1};

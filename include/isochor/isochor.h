@@ -72,7 +72,8 @@ typedef struct iso_effect {
 
 /* ---- Meshes ---- */
 
-enum { ISO_TET4 = 0, ISO_TET10 = 1, ISO_HEX8 = 2 }; /* cell types, with the node orders of VTK */
+/* Cell types, with the node orders of VTK; ISO_TRI3 is that of thin bodies. */
+enum { ISO_TET4 = 0, ISO_TET10 = 1, ISO_HEX8 = 2, ISO_TRI3 = 3 };
 
 typedef struct iso_named_indices {
   const char* name;
@@ -112,8 +113,8 @@ typedef struct iso_mesh {
  * `*out` belongs to the caller, who frees it with iso_mesh_free(). */
 ISO_API iso_status iso_mesh_read(const char* path, double scale, iso_mesh** out, char* message,
                                  size_t message_size);
-/* A box of cells (tets: six a cell) with surfaces x0, x1, y0, y1, z0, z1; `cell_type` ISO_TET4 or ISO_HEX8.
- */
+/* A box of cells (tets: six a cell) with surfaces x0, x1, y0, y1, z0, z1; `cell_type` ISO_TET4 or ISO_HEX8,
+ * or ISO_TRI3 for a sheet that is flat along one axis. */
 ISO_API iso_status iso_mesh_box(const double lower[3], const double upper[3], const int32_t divisions[3],
                                 int32_t cell_type, iso_mesh** out, char* message, size_t message_size);
 /* Of the two calls above, once. Null, and meshes that the caller made, are left alone. */

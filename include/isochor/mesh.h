@@ -1,4 +1,4 @@
-// A volume mesh as plain data: what readers produce, scenes build and World::add_body takes.
+// A mesh as plain data: what readers produce, scenes build and World::add_body takes.
 #pragma once
 
 #include <cstddef>
@@ -11,16 +11,19 @@
 namespace isochor {
 
 // Node orders are those of VTK: Tet10 has its mid-edge nodes on (01)(12)(20)(03)(13)(23); Hex8 has its
-// corners counterclockwise around the bottom, then those above them.
-enum class CellType : std::uint8_t { tet4, tet10, hex8 };
+// corners counterclockwise around the bottom, then those above them. A mesh of Tri3 is that of a thin body:
+// its cells are triangles in space, which all go round the same way as seen from one side.
+enum class CellType : std::uint8_t { tet4, tet10, hex8, tri3 };
 
 constexpr int nodes_per_cell(CellType type) {
-  return type == CellType::tet4 ? 4 : (type == CellType::hex8 ? 8 : 10);
+  constexpr int nodes[] = {4, 10, 8, 3};
+  return nodes[static_cast<int>(type)];
 }
 // Faces of a Tet10 carry their mid-edge nodes after the corners: (01)(12)(20). Those of a Hex8 have their
-// four corners in turn.
+// four corners in turn. The only face of a Tri3 is the cell itself.
 constexpr int nodes_per_face(CellType type) {
-  return type == CellType::tet4 ? 3 : (type == CellType::hex8 ? 4 : 6);
+  constexpr int nodes[] = {3, 6, 4, 3};
+  return nodes[static_cast<int>(type)];
 }
 
 // A named set of faces. The node order of a face need not say which side is outside.

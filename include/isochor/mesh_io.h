@@ -14,6 +14,9 @@ namespace isochor {
 
 struct MeshReadOptions {
   double scale = 1.0;  // multiplies coordinates: 1e-3 for a file in millimeters
+  // The triangles of the file are the cells, for a thin body. Of these formats, and of Wavefront (.obj) and
+  // STL; what groups triangles becomes regions, and surfaces of the same names.
+  bool triangles = false;
 };
 
 // Reads Gmsh 2.2 and 4.1 (.msh, ASCII and binary), VTK legacy (.vtk), VTK XML (.vtu), TetGen (.node/.ele with

@@ -30,6 +30,7 @@ struct SceneEffects {
   std::vector<GrowthDef> growth;
   std::vector<EpidermisDef> epidermis;
   std::vector<MembraneDef> membranes;
+  std::vector<ShellDef> shells;
   std::vector<TieDef> ties;
   std::vector<CableDef> cables;
   std::vector<WindingDef> windings;
@@ -44,15 +45,15 @@ struct SceneEffects {
 struct EffectKind;
 extern const EffectKind volumes_kind, dirichlet_kind, driven_kind, skins_kind, linear_constraints_kind,
     cavities_kind, tractions_kind, pressures_kind, forces_kind, damping_kind, muscles_kind, growth_kind,
-    epidermis_kind, membranes_kind, ties_kind, cables_kind, windings_kind, springs_kind, layers_kind,
-    valves_kind, rigid_bodies_kind, contacts_kind, surface_contacts_kind;
+    epidermis_kind, membranes_kind, shells_kind, ties_kind, cables_kind, windings_kind, springs_kind,
+    layers_kind, valves_kind, rigid_bodies_kind, contacts_kind, surface_contacts_kind;
 
 // In the order in which a scene file has them.
 inline constexpr const EffectKind* effect_kinds[] = {
-    &volumes_kind,      &dirichlet_kind, &driven_kind,          &skins_kind,     &linear_constraints_kind,
-    &cavities_kind,     &tractions_kind, &pressures_kind,       &forces_kind,    &damping_kind,
-    &muscles_kind,      &growth_kind,    &epidermis_kind,       &membranes_kind, &ties_kind,
-    &cables_kind,       &windings_kind,  &springs_kind,         &layers_kind,    &valves_kind,
-    &rigid_bodies_kind, &contacts_kind,  &surface_contacts_kind};
+    &volumes_kind,  &dirichlet_kind,    &driven_kind,    &skins_kind,           &linear_constraints_kind,
+    &cavities_kind, &tractions_kind,    &pressures_kind, &forces_kind,          &damping_kind,
+    &muscles_kind,  &growth_kind,       &epidermis_kind, &membranes_kind,       &shells_kind,
+    &ties_kind,     &cables_kind,       &windings_kind,  &springs_kind,         &layers_kind,
+    &valves_kind,   &rigid_bodies_kind, &contacts_kind,  &surface_contacts_kind};
 
 }  // namespace isochor

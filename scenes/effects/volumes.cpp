@@ -91,10 +91,12 @@ Result<void> check_none(const EffectKind&, const SceneDef&) {
 
 std::vector<VolumeRows> rows_of(const SceneDef& s) {
   if (s.volumes) return *s.volumes;
-  std::vector<VolumeRows> rows(s.bodies.size());
-  for (std::size_t b = 0; b < rows.size(); ++b) {
-    rows[b].def.body = static_cast<BodyId>(b);
-    if (b > 0) rows[b].def.name += " " + s.bodies[b].name;
+  std::vector<VolumeRows> rows;
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
+    if (s.bodies[b].element == Element::tri3) continue;  // thin: no volume
+    VolumeRows& of = rows.emplace_back();
+    of.def.body = static_cast<BodyId>(b);
+    if (b > 0) of.def.name += " " + s.bodies[b].name;
   }
   return rows;
 }

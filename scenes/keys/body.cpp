@@ -4,13 +4,15 @@
 namespace isochor::keys {
 
 ISOCHOR_WORDS(Element, ISOCHOR_WORD(Element, tet4), ISOCHOR_WORD(Element, tet4_edge_smoothed),
-              ISOCHOR_WORD(Element, tet10), ISOCHOR_WORD(Element, hex8));
+              ISOCHOR_WORD(Element, tet10), ISOCHOR_WORD(Element, hex8), ISOCHOR_WORD(Element, tri3));
 ISOCHOR_WORDS(CellType, ISOCHOR_WORD(CellType, tet4), ISOCHOR_WORD(CellType, tet10),
-              ISOCHOR_WORD(CellType, hex8));
+              ISOCHOR_WORD(CellType, hex8), ISOCHOR_WORD(CellType, tri3));
 
 void describe(Visitor& io, BoxMeshDef& b) {
   const BoxMeshDef d;
-  io.about("box", "A box of cells; surfaces x0, x1, y0, y1, z0, z1.");
+  io.about("box",
+           "A box of cells; surfaces x0, x1, y0, y1, z0, z1. Of `tri3` a sheet that is flat along one "
+           "axis; node sets have these names.");
   io.vector({"lower", "m", "corner"}, b.lower, d.lower);
   io.vector({"upper", "m", "corner"}, b.upper, d.upper);
   io.integers(Key("divisions", "", "cells a side, six tets each").least(1).absent("1, 1, 1"), b.divisions);
@@ -121,7 +123,7 @@ void describe(Visitor& io, MeshSelection& s) {
 
 void describe_at_rest(Visitor& io, SceneBody& b) {
   const SceneBody d;
-  io.about("body", "A soft body.");
+  io.about("body", "A soft body, solid or thin.");
   io.required_text({"name", "", "that effects and results use"}, b.name);
   MeshSource mesh{b.mesh};
   io.object({"mesh", "", "where it comes from"}, mesh);
@@ -139,7 +141,7 @@ void describe_at_rest(Visitor& io, SceneBody& b) {
       {"refine_where", "", "then cuts the cells of these places further, and neighbors as far as they must"},
       b.refine_where);
   io.word({"element", "", "see [elements](elements.md)"}, b.element, d.element);
-  io.list(Key("materials", "", "one, or one a region").must(), b.materials);
+  io.list(Key("materials", "", "one, or one a region").absent("none, of a thin body"), b.materials);
   io.optional_number(
       Key("guard_stiffness", "",
           "[element guard](elements.md): barrier against single tets turning over, relative to mu; 0: off")

@@ -82,6 +82,16 @@ PageField page_field(const std::string& name) {
 }
 
 // The bodies of the first frame; later ones must have the same nodes.
+// A frame of a solid, or of a thin body.
+Result<Mesh> read_frame(const std::string& file) {
+  auto solid = read_mesh(file);
+  if (solid) return solid;
+  MeshReadOptions options;
+  options.triangles = true;
+  auto thin = read_mesh(file, options);
+  return thin ? thin : solid;
+}
+
 struct Bodies {
   PageScene scene;
   std::vector<std::vector<Index>> nodes;  // of the mesh, one a vertex of the page; one list a body
@@ -97,7 +107,7 @@ Result<PageFrame> frame_of(const Bodies& bodies, double time, const std::vector<
   frame.time = time;
   frame.fields.resize(bodies.scene.fields.size());
   for (std::size_t b = 0; b < files.size(); ++b) {
-    const auto mesh = read_mesh(files[b]);
+    const auto mesh = read_frame(files[b]);
     if (!mesh) return mesh.failure();
     const Mesh& m = mesh.value();
     if (m.nodes.size() != bodies.mesh_nodes[b])
@@ -123,14 +133,14 @@ Result<PageFrame> frame_of(const Bodies& bodies, double time, const std::vector<
 Result<Bodies> read_bodies(const std::vector<std::string>& first, const std::vector<std::string>& last) {
   Bodies out;
   for (const std::string& file : first) {
-    auto mesh = read_mesh(file);
+    auto mesh = read_frame(file);
     if (!mesh) return mesh.failure();
     out.nodes.push_back(add_page_mesh(out.scene, mesh.value(), {fs::path(file).stem().string()}));
     out.mesh_nodes.push_back(mesh.value().nodes.size());
     out.elements += static_cast<std::size_t>(mesh.value().cell_count());
   }
   for (const std::string& file : last) {
-    auto mesh = read_mesh(file);
+    auto mesh = read_frame(file);
     if (!mesh) return mesh.failure();
     for (const MeshField& f : mesh.value().fields) {
       const bool known = std::any_of(out.scene.fields.begin(), out.scene.fields.end(),

@@ -36,7 +36,9 @@ std::vector<double> cell_volumes(const Mesh& mesh) {
       return dot(cross(x(1) - x(0), x(2) - x(0)), x(3) - x(0)) / 6;
     };
     double volume = 0;
-    if (mesh.cell_type == CellType::hex8) {
+    if (mesh.cell_type == CellType::tri3) {
+      volume = 1;  // thin: none
+    } else if (mesh.cell_type == CellType::hex8) {
       for (const auto& corners : kHexTets) volume += tet(corners);
     } else {
       volume = tet({0, 1, 2, 3});

@@ -217,7 +217,7 @@ std::vector<Index> contact_nodes(const Mesh& mesh, const std::vector<std::string
 
 Vec3 center_of(const Mesh& mesh, Index cell) {
   const auto stride = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
-  const std::size_t corners = mesh.cell_type == CellType::hex8 ? 8 : 4;
+  const std::size_t corners = mesh.cell_type == CellType::hex8 ? 8 : std::min<std::size_t>(stride, 4);
   Vec3 sum{};
   for (std::size_t k = 0; k < corners; ++k)
     sum += mesh.nodes[static_cast<std::size_t>(mesh.cells[static_cast<std::size_t>(cell) * stride + k])];

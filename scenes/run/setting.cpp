@@ -21,6 +21,8 @@ const char* key_word(Element e) {
       return "tet4_edge_smoothed";
     case Element::tet10:
       return "tet10";
+    case Element::tri3:
+      return "tri3";
     default:
       return "hex8";
   }
@@ -37,6 +39,8 @@ std::string element_text(const std::optional<Element>& element) {
       return "edge-smoothed Tet4";
     case Element::tet10:
       return "Tet10";
+    case Element::tri3:
+      return "triangles";
     default:
       return "Hex8";
   }
@@ -73,6 +77,12 @@ Result<SettingChoices> setting_choices(const SceneDef& scene) {
     const auto made = make_body(body, scene.folder, place("bodies", b));
     if (!made) return made.failure();
     const Mesh& mesh = made.value().def.mesh;
+    if (mesh.cell_type == CellType::tri3) {
+      return Error{
+          place("bodies", b) + " (\"" + body.name +
+          "\") is thin, and meshes of triangles are not refined here; run the scene with a finer mesh "
+          "of its surface and compare"};
+    }
     out.linear_tets.push_back(mesh.cell_type == CellType::tet4);
     out.cells.push_back(mesh.cell_count());
     out.most_levels = std::min(out.most_levels, kMostRefined - body.refine);

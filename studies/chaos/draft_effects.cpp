@@ -365,15 +365,29 @@ void draw_skins(ChaosRandom& random, ChaosDraft& draft, std::size_t b) {
   }
 }
 
+// A sheet of paper or of rubber that bends on the surface of a body.
+void draw_shell(ChaosRandom& random, ChaosDraft& draft, std::size_t b) {
+  ShellDef def;
+  def.name = "shell" + std::to_string(b);
+  def.body = id_of(b);
+  def.surfaces = {random_surface(random, draft.bodies[b])};
+  def.young = draft.young * random.decades(-1, 4);
+  def.poisson = random.pick({0.0, 0.3, 0.5});
+  def.thickness = draft.length * random.decades(-3, -1);
+  if (random.chance(0.5)) def.density = 1000;
+  draft.scene().shells.push_back(def);
+}
+
 }  // namespace
 
 void draft_attachments(ChaosDraft& draft) {
-  ChaosRandom random = draft.random("attachments");
+  ChaosRandom random = draft.random("attachments"), shells = draft.random("shells");
   for (std::size_t b = 0; b < draft.bodies.size(); ++b) {
     const bool tetrahedra = draft.bodies[b].tetrahedra || random.chance(0.03);
     if (tetrahedra && random.chance(0.18)) draw_cable(random, draft, b);
     if (tetrahedra && random.chance(0.12)) draw_winding(random, draft, b);
     if (!draft.bodies[b].surfaces.empty()) draw_skins(random, draft, b);
+    if (!draft.bodies[b].surfaces.empty() && shells.chance(0.08)) draw_shell(shells, draft, b);
   }
 }
 

@@ -102,6 +102,7 @@ void add_effect_parts(const SceneDef& s, std::set<std::string>& parts) {
   note("damping", !s.damping.empty());
   note("epidermis", !s.epidermis.empty());
   note("membrane", !s.membranes.empty());
+  note("shell", !s.shells.empty());
   note("tie", !s.ties.empty());
   note("cable", !s.cables.empty());
   note("winding", !s.windings.empty());

@@ -6,6 +6,7 @@
 
 #include "catch.h"
 #include "constraints/layer/face_strain.h"
+#include "constraints/layer/hinge_pool.h"
 #include "constraints/stencil/face_pool.h"
 #include "constraints/stencil/segment_pool.h"
 #include "contract/formulas.h"
@@ -333,6 +334,44 @@ TEST_CASE("skins have the derivatives of their formulas") {
           c > 0 ? HyperDual(1 / c) * (pow(t.q, -c) - HyperDual(1)) : HyperDual(-1) * log(t.q);
       return Values{HyperDual(0.5 * mu * t.area) * (t.trace - HyperDual(2) + volumetric), {}};
     });
+  }
+}
+
+TEST_CASE("hinges have the derivatives of their angle") {
+  for (const char* name : {"thin body, nu = 0.300000", "thin body, clamped"}) {
+    const SceneProbe scene(find_case(name));
+    const auto pools = pools_of<HingePool>(scene);
+    REQUIRE(pools.size() == 1);
+    const HingePool& pool = *pools[0];
+    const auto angle = [](const std::vector<Point>& x) {
+      const Point e = minus(x[1], x[0]), p = minus(x[2], x[0]), q = minus(x[3], x[0]);
+      const HyperDual along = inner(e, e);
+      return atan(sqrt(along) * triple(q, e, p) / (inner(e, q) * inner(e, p) - along * inner(p, q)));
+    };
+    const auto corners = [&](Index s, std::vector<Point> x) {
+      if (x.size() == 4) return x;
+      const auto n = pool.nodes()[s];
+      const Vec3 a = scene.rest()[at(n[0])], e = scene.rest()[at(n[1])] - a, c = scene.rest()[at(n[2])] - a;
+      const Vec3 ahead = (dot(c, e) / dot(e, e)) * e - c;
+      x.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k)
+        x[3][k] = HyperDual(0.5) * (x[0][k] + x[1][k]) + HyperDual(ahead[static_cast<int>(k)]);
+      return x;
+    };
+    int clamped = 0;
+    compare(scene, pool, [&](Index s, const std::vector<Point>& x) {
+      std::vector<Point> rest;
+      for (const Index n : pool.nodes()[s]) rest.push_back(fixed(scene.rest()[at(n)]));
+      clamped += pool.is_clamped(s) ? 1 : 0;
+      const HyperDual phi =
+          HyperDual(pool.rest_length(s)) * (angle(corners(s, x)) - HyperDual(angle(corners(s, rest)).a));
+      // The stiffness is what the pool says at this very place.
+      const PoolProbe probe(pool, scene);
+      const double now = probe.evaluate(Want::value, scene.x()).energy[at(s)];
+      const double square = probe.evaluate(Want::value, scene.x()).value[at(s)];
+      return Values{HyperDual(now / (square * square)) * phi * phi, {phi}};
+    });
+    CHECK((clamped > 0) == (std::string(name) == "thin body, clamped"));
   }
 }
 

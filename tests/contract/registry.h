@@ -54,6 +54,7 @@ struct SceneCase {
   double stretch = 1;           // of the deformed sample, on top of its waves
   bool stress_free = true;      // no force and zero rows at rest with zero multipliers
   bool rigid_invariant = true;  // the potential does not see rigid motions
+  bool own_scale = false;  // metrics of rows are by constants of the author, not by the modulus of a body
   bool numbered_cells = false;  // has a field by cell number: renumbering cells makes another scene
   // Further bodies beside the first, of its element and materials.
   std::vector<isochor::Mesh> more_bodies = {};
@@ -61,6 +62,9 @@ struct SceneCase {
 std::vector<SceneCase> scene_cases();
 // Of the scene cases: what attaches, pulls and fills bodies (registry_attachments.cpp).
 void add_attachments(std::vector<SceneCase>& out);
+
+// Thin bodies and layers that bend (registry_shells.cpp).
+void add_shells(std::vector<SceneCase>& out);
 
 // What solids do by themselves, springs, equations, given motion that is not rigid (registry_active.cpp).
 void add_active(std::vector<SceneCase>& out);

@@ -344,6 +344,7 @@ std::vector<SceneCase> scene_cases() {
   add_damping(out);
   add_fields(out);
   add_skins(out);
+  add_shells(out);
   add_attachments(out);
   add_active(out);
   add_worked_example(out);

@@ -79,6 +79,7 @@ TEST_CASE("surfaces by place, and those of the boundary, can be named wherever a
         R"("pressures": [{"name": "p", )" + one + R"(, "amount": 10}])",
         R"("epidermis": [{)" + one + R"(, "stiffness": 1}])",
         R"("membranes": [{)" + one + R"(, "young": 1e5, "thickness": 1e-4}])",
+        R"("shells": [{)" + one + R"(, "young": 1e5, "thickness": 1e-4}])",
         R"("layers": [{"name": "l", )" + one + R"(, "stiffness": 1}])",
         R"("contacts": [{"name": "c", )" + one + R"(, "obstacle": {"position": [0, 0, -1]}}])",
         R"("cavities": [{"name": "v", )" + one + R"(, "amount": 10, "cap_free_openings": true}])",

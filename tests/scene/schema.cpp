@@ -111,6 +111,7 @@ const std::map<std::string, std::string> kComplete = {
     {"damping[]", R"({"name": "x", "viscosity": 1, "mass_rate": 1})"},
     {"epidermis[]", R"({"name": "x", "surfaces": "x1", "young": 1, "poisson": 0.3, "thickness": 1})"},
     {"membranes[]", R"({"name": "x", "surfaces": "x1", "young": 1, "thickness": 1})"},
+    {"shells[]", R"({"name": "x", "surfaces": "x1", "young": 1, "thickness": 1})"},
     {"ties[]", R"({"name": "x", "where": {"surfaces": "x1"}, "to": "block", "stiffness": 1})"},
     {"cables[]", R"({"name": "x", "points": [[0.5, 0.5, 0.5], [1.5, 0.5, 0.5]], "amount": 1})"},
     {"windings[]", R"({"name": "x", "paths": [[[0.5, 0.5, 0.5], [1.5, 0.5, 0.5]]]})"},

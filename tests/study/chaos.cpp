@@ -145,6 +145,7 @@ TEST_CASE("a few hundred scenes have everything that is on the shelf") {
                            "damping",
                            "epidermis",
                            "membrane",
+                           "shell",
                            "tie",
                            "cable",
                            "winding",

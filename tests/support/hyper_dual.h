@@ -48,6 +48,10 @@ inline HyperDual sqrt(const HyperDual& p) {
   const double s = std::sqrt(p.a);
   return p.chain(s, 0.5 / s, -0.25 / (s * p.a));
 }
+inline HyperDual atan(const HyperDual& p) {
+  const double slope = 1 / (1 + p.a * p.a);
+  return p.chain(std::atan(p.a), slope, -2 * p.a * slope * slope);
+}
 inline HyperDual pow(const HyperDual& p, double n) {
   const double f = std::pow(p.a, n);
   return p.chain(f, n * f / p.a, n * (n - 1) * f / (p.a * p.a));

@@ -149,7 +149,9 @@ Mesh shuffled(const Mesh& mesh, unsigned seed, std::vector<Index>& place) {
       const std::size_t quarter = random() % 4;
       for (std::size_t k = 0; k < 8; ++k) to[k] = place[at(from[k / 4 * 4 + (k + quarter) % 4])];
     }
-    for (int k = 0; per != 8 && k < 4; ++k) to[k] = place[at(from[turn[k]])];
+    const std::size_t third = per == 3 ? random() % 3 : 0;
+    for (std::size_t k = 0; per == 3 && k < 3; ++k) to[k] = place[at(from[(k + third) % 3])];
+    for (int k = 0; per != 8 && per != 3 && k < 4; ++k) to[k] = place[at(from[turn[k]])];
     for (int e = 0; per == 10 && e < 6; ++e) {
       for (int f = 0; f < 6; ++f) {
         const int p = turn[kEdge[e][0]], q = turn[kEdge[e][1]];

@@ -22,6 +22,7 @@ _Zone = TypedDict("_Zone", {"name": str, "regions": _Names, "cells": ArrayLike, 
 _Rotation = TypedDict("_Rotation", {"point": ArrayLike, "axis": ArrayLike, "angle": float, "angle_deg": float}, total=False)
 _Keyframe = TypedDict("_Keyframe", {"t": float, "position": ArrayLike, "turn": ArrayLike}, total=False)
 _SkinBone = TypedDict("_SkinBone", {"motion": str, "keyframes": Sequence["_Keyframe"], "weights": ArrayLike, "field": str}, total=False)
+_Rim = TypedDict("_Rim", {"surfaces": _Names, "node_sets": _Names, "nodes": ArrayLike, "boxes": ArrayLike, "everything": bool}, total=False)
 _Term = TypedDict("_Term", {"body": str, "point": ArrayLike, "direction": ArrayLike, "weight": float}, total=False)
 _Obstacle = TypedDict("_Obstacle", {"shape": Literal["plane", "sphere", "capsule", "cylinder", "box", "mesh", "distance_field"], "position": ArrayLike, "axis": ArrayLike, "side": ArrayLike, "radius": float, "length": float, "size": ArrayLike, "rounding": float, "file": str, "scale": float, "spacing": float, "motion": str, "keyframes": Sequence["_Keyframe"]}, total=False)
 
@@ -519,6 +520,49 @@ def membrane(
         of the membrane; >= 0, <= 0.5 (default: 0.5)
     thickness:
         [m] of the membrane; > 0
+
+    Amounts are numbers, or points [(time, value), ...] in between which they are linear. Returns an
+    Effect for ``World.add``. Raises isochor.Error for keys that there are not; values are looked at when
+    the effect is added.
+    """
+
+def shell(
+    body: Union[Body, str, None] = ...,
+    *,
+    name: str = ...,
+    surfaces: Union[_Names, None] = ...,
+    young: Union[float, None] = ...,
+    poisson: float = ...,
+    thickness: Union[float, None] = ...,
+    density: float = ...,
+    bending: float = ...,
+    clamped: Union["_Rim", None] = ...,
+    flat: bool = ...,
+) -> Effect:
+    """A thin sheet that stretches, shears and bends, see shells: what a thin body is made of, or a layer on a solid one.
+
+    Parameters
+    ----------
+    body:
+        A body of the world, or its name; None: the first.
+    name:
+        of the effect; all effects of a world share one set of names (default: one is found)
+    surfaces:
+        of the mesh or of the body (default: all of a thin body)
+    young:
+        [Pa] of the sheet; > 0
+    poisson:
+        of the sheet; >= 0, <= 0.5 (default: 0.5)
+    thickness:
+        [m] of the sheet; > 0
+    density:
+        [kg/m^3] of the sheet; 0: a layer without mass, on solid bodies only; >= 0 (default: 0)
+    bending:
+        [N m] stiffness of a plate against bending; 0: that of a solid sheet; >= 0 (default: 0)
+    clamped:
+        edges at the rim with both ends there keep the direction in which the sheet leaves them; supports hold nodes
+    flat:
+        free of bending when flat, not as the mesh has it (default: false)
 
     Amounts are numbers, or points [(time, value), ...] in between which they are linear. Returns an
     Effect for ``World.add``. Raises isochor.Error for keys that there are not; values are looked at when

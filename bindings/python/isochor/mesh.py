@@ -13,24 +13,25 @@ from .errors import Error
 from .reports import Finding, MeshReport
 
 _MESHIO_CELLS = {"tetra": "tet4", "tetra10": "tet10", "hexahedron": "hex8"}
-_MESHIO_FACES = {"tet4": "triangle", "tet10": "triangle6", "hex8": "quad"}
+_MESHIO_FACES = {"tet4": "triangle", "tet10": "triangle6", "hex8": "quad", "tri3": "triangle"}
 
 
 class Mesh:
-    """A volume mesh at rest.
+    """A mesh at rest, of a solid or of a thin body.
 
     Parameters
     ----------
     points:
         Rest positions [m], shape (n, 3).
     cells:
-        Nodes of each cell, shape (m, 4), (m, 10) or (m, 8) for tet4, tet10 and hex8, in the order of VTK.
+        Nodes of each cell, shape (m, 4), (m, 10) or (m, 8) for tet4, tet10 and hex8, in the order of VTK;
+        (m, 3) for tri3, the triangles of a thin body.
     cell_region:
         Index into ``regions``, shape (m,); None: all cells are in the first.
     regions:
         Names of regions; empty: the one region "body".
     surfaces:
-        Faces by name, each of shape (f, 3), (f, 6) or (f, 4) for tet4, tet10 and hex8.
+        Faces by name, each of shape (f, 3), (f, 6), (f, 4) or (f, 3) for tet4, tet10, hex8 and tri3.
     node_sets:
         Nodes by name, each of shape (k,).
     fields:
@@ -76,7 +77,7 @@ class Mesh:
 
     @property
     def cells(self) -> np.ndarray:
-        """Nodes of each cell, shape (m, 4), (m, 10) or (m, 8)."""
+        """Nodes of each cell, shape (m, 4), (m, 10), (m, 8) or (m, 3)."""
         return self._core.cells
 
     @property
@@ -87,7 +88,7 @@ class Mesh:
 
     @property
     def cell_type(self) -> str:
-        """``tet4``, ``tet10`` or ``hex8``."""
+        """``tet4``, ``tet10``, ``hex8`` or ``tri3``."""
         return self._core.cell_type
 
     @property
@@ -127,7 +128,8 @@ class Mesh:
         """
         import meshio
 
-        volume_type = next(key for key, word in _MESHIO_CELLS.items() if word == self.cell_type)
+        words = {**_MESHIO_CELLS, "triangle": "tri3"}
+        volume_type = next(key for key, word in words.items() if word == self.cell_type)
         blocks = [(volume_type, np.array(self.cells))]
         numbers = [np.array(self.cell_region) + 1]
         field_data = {name: np.array([k + 1, 3]) for k, name in enumerate(self.regions)}
@@ -236,13 +238,14 @@ def _groups(mesh: Any) -> list[dict[str, np.ndarray]]:
     return out
 
 
-def read_mesh(path: str | os.PathLike[str], *, scale: float = 1.0) -> Mesh:
+def read_mesh(path: str | os.PathLike[str], *, scale: float = 1.0, triangles: bool = False) -> Mesh:
     """Reads Gmsh, VTK, VTU, TetGen, Medit or Abaqus.
 
-    ``scale`` multiplies the coordinates: 1e-3 for a file in millimeters.
+    ``scale`` multiplies the coordinates: 1e-3 for a file in millimeters. ``triangles``: those of the file are
+    the cells, for a thin body (also of Wavefront and STL files).
     Raises :class:`isochor.Error` with what is wrong and where in the file.
     """
-    return Mesh._of(_isochor.read_mesh(os.fspath(path), float(scale)))
+    return Mesh._of(_isochor.read_mesh(os.fspath(path), float(scale), bool(triangles)))
 
 
 def box_mesh(
@@ -254,6 +257,7 @@ def box_mesh(
 ) -> Mesh:
     """A box of cells between two corners [m], with surfaces x0, x1, y0, y1, z0 and z1.
 
-    ``divisions`` are cells a side (six tets each); ``cell_type`` is "tet4", "tet10" or "hex8".
+    ``divisions`` are cells a side (six tets each); ``cell_type`` is "tet4", "tet10" or "hex8", or
+    "tri3" for a sheet that is flat along one axis.
     """
     return Mesh._of(_isochor.box_mesh(lower, upper, divisions, cell_type))

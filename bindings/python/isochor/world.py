@@ -336,7 +336,7 @@ class World:
     def add_body(
         self,
         mesh: Mesh,
-        materials: Material | Sequence[Material],
+        materials: Material | Sequence[Material] = (),
         *,
         name: str | None = None,
         element: str = "tet4_edge_smoothed",
@@ -344,7 +344,8 @@ class World:
     ) -> Body:
         """Adds a body.
 
-        ``materials``: one, or one a region. ``element``: "tet4", "tet4_edge_smoothed", "tet10" or "hex8".
+        ``materials``: one, or one a region; none of a thin body. ``element``: "tet4", "tet4_edge_smoothed",
+        "tet10", "hex8", or "tri3" of a thin body, which needs a shell.
         ``keys``: others of ``bodies[]`` in docs/scenes.md, such as ``surfaces`` and ``node_sets`` by place,
         ``guard_stiffness``, ``velocity`` [m/s] and ``angular_velocity`` [rad/s].
         Raises :class:`isochor.Error` for a mesh, material or key that cannot be.

@@ -15,7 +15,8 @@ using MeshPtr = std::shared_ptr<const Mesh>;
 using MeshClass = py::class_<Mesh, std::shared_ptr<Mesh>>;
 
 const char* name_of(CellType type) {
-  return type == CellType::tet4 ? "tet4" : (type == CellType::hex8 ? "hex8" : "tet10");
+  constexpr const char* names[] = {"tet4", "tet10", "hex8", "tri3"};
+  return names[static_cast<int>(type)];
 }
 
 CellType cell_type_of(const py::array& cells) {
@@ -23,10 +24,11 @@ CellType cell_type_of(const py::array& cells) {
   if (width == 4) return CellType::tet4;
   if (width == 10) return CellType::tet10;
   if (width == 8) return CellType::hex8;
+  if (width == 3) return CellType::tri3;
   throw Refused("Mesh: cells have " +
                 (cells.ndim() == 2 ? std::to_string(width) + " nodes each"
                                    : std::to_string(cells.ndim()) + " dimensions") +
-                "; give an array of shape (m, 4), (m, 10) or (m, 8) for tet4, tet10 or hex8");
+                "; give an array of shape (m, 4), (m, 10), (m, 8) or (m, 3) for tet4, tet10, hex8 or tri3");
 }
 
 std::shared_ptr<Mesh> make_mesh(const py::object& points, const py::object& cells,
@@ -130,9 +132,9 @@ py::dict check(const Mesh& mesh) {
   return out;
 }
 
-std::shared_ptr<Mesh> read(const std::string& path, double scale) {
+std::shared_ptr<Mesh> read(const std::string& path, double scale, bool triangles) {
   const py::gil_scoped_release free;
-  return std::make_shared<Mesh>(need(read_mesh(path, {scale})));
+  return std::make_shared<Mesh>(need(read_mesh(path, {scale, triangles})));
 }
 
 std::shared_ptr<Mesh> box(const py::object& lower, const py::object& upper, const py::object& divisions,
@@ -147,12 +149,13 @@ std::shared_ptr<Mesh> box(const py::object& lower, const py::object& upper, cons
   def.lower = vector_in(lower, "box_mesh: lower");
   def.upper = vector_in(upper, "box_mesh: upper");
   def.divisions = {sides[0], sides[1], sides[2]};
-  for (const CellType type : {CellType::tet4, CellType::tet10, CellType::hex8}) {
+  for (const CellType type : {CellType::tet4, CellType::tet10, CellType::hex8, CellType::tri3}) {
     if (cell_type != name_of(type)) continue;
     def.cell_type = type;
     return std::make_shared<Mesh>(need(box_mesh(def)));
   }
-  throw Refused("box_mesh: cell_type is \"" + cell_type + "\"; give \"tet4\", \"tet10\" or \"hex8\"");
+  throw Refused("box_mesh: cell_type is \"" + cell_type +
+                "\"; give \"tet4\", \"tet10\", \"hex8\" or \"tri3\"");
 }
 
 }  // namespace

@@ -55,11 +55,12 @@ ContactSurface::ContactSurface(const std::array<SurfaceFaces, 2>& sides, std::sp
   double edges = 0;
   for (std::size_t side = 0; side < 2; ++side) {
     first_[side] = triangles();
-    const auto& [faces, per] = sides[side];
+    const auto& [faces, per, lower] = sides[side];
     for (std::size_t f = 0; f < faces.size(); f += per)
       add_face(std::span(faces).subspan(f, per), static_cast<int>(side));
     std::map<std::pair<Index, Index>, std::pair<std::size_t, std::size_t>> open;
     for (std::size_t t = at(first_[side]); t < corner_.size(); ++t) {
+      if (lower > 0 && t == at(first_[side]) + lower / 3) open.clear();
       for (std::size_t k = 0; k < 3; ++k) {
         const Index a = corner_[t][k], b = corner_[t][(k + 1) % 3];
         edges += norm(rest[at(b)] - rest[at(a)]);

@@ -25,10 +25,12 @@ struct SurfacePoint {
   }
 };
 
-// Faces of 3, 4 or 6 nodes of the scene, counterclockwise from outside.
+// Faces of 3, 4 or 6 nodes of the scene, counterclockwise from outside. Those of a thin body are there twice,
+// with its upper and then with its lower side out; the two are no neighbors of each other.
 struct SurfaceFaces {
   std::vector<Index> faces;
   std::size_t per = 3;
+  std::size_t lower = 0;  // entry of `faces` where the lower side begins; 0: there is none
 };
 
 class ContactSurface {

@@ -214,14 +214,27 @@ class SurfaceContactEffect final : public EffectSource {
     const DefaultLayer standard = surface.single() ? kWithinBody : kBetweenBodies;
     return {standard.thickness * surface.size() / softer, standard.knee * softer, softer};
   }
-  static std::size_t nodes_of_faces(const Builder& builder, BodyId body) {
-    return static_cast<std::size_t>(nodes_per_face(builder.body(body).mesh.cell_type));
+  // A thin body is touched from both sides.
+  static SurfaceFaces faces_of(const Builder& builder, BodyId id, std::vector<Index> faces) {
+    const BodyData& body = builder.body(id);
+    SurfaceFaces side{std::move(faces), static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type))};
+    if (!body.thin()) return side;
+    side.lower = side.faces.size();
+    for (std::size_t f = 0; f < side.lower; f += 3) {
+      const Index turned[3] = {side.faces[f], side.faces[f + 2], side.faces[f + 1]};
+      side.faces.insert(side.faces.end(), turned, turned + 3);
+    }
+    return side;
   }
   Result<std::array<SurfaceFaces, 2>> both_sides(const Builder& builder, const std::string& called) const {
     std::array<SurfaceFaces, 2> sides;
     auto first = outward_faces(builder, def_.body, def_.surfaces, called);
     if (!first) return first.failure();
-    sides[0] = {std::move(first).value(), nodes_of_faces(builder, def_.body)};
+    sides[0] = faces_of(builder, def_.body, std::move(first).value());
+    if (!def_.against && builder.body(def_.body).thin()) {
+      return Error{who() + "the thin body \"" + builder.body(def_.body).name +
+                   "\" cannot touch itself: its two sides are in one place; name another body in `against`"};
+    }
     if (!def_.against) {
       if (!def_.against_surfaces.empty())
         return Error{who() + "against_surfaces are named, but not the body in `against` that they belong to"};
@@ -229,7 +242,7 @@ class SurfaceContactEffect final : public EffectSource {
     }
     auto second = outward_faces(builder, *def_.against, def_.against_surfaces, called);
     if (!second) return second.failure();
-    sides[1] = {std::move(second).value(), nodes_of_faces(builder, *def_.against)};
+    sides[1] = faces_of(builder, *def_.against, std::move(second).value());
     std::vector<Index> shared = sides[0].faces, other = sides[1].faces, both;
     std::sort(shared.begin(), shared.end());
     std::sort(other.begin(), other.end());

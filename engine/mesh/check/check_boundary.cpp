@@ -295,6 +295,7 @@ void check_surface(const Mesh& mesh, const MeshSurface& surface, const std::vect
 }  // namespace
 
 void check_boundary(const Mesh& mesh, const std::vector<CellFace>& faces, MeshReport& report) {
+  if (mesh.cell_type == CellType::tri3) return check_sheet(mesh, report);
   const std::vector<CellFace> boundary = boundary_faces(mesh, faces, report);
   Faces outward;
   outward.reserve(boundary.size());

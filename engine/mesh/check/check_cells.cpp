@@ -257,7 +257,10 @@ void check_regions(const Mesh& mesh, MeshReport& report) {
 }  // namespace
 
 void check_cells(const Mesh& mesh, MeshReport& report) {
-  check_shapes(mesh, report);
+  if (mesh.cell_type == CellType::tri3)
+    check_triangles(mesh, report);
+  else
+    check_shapes(mesh, report);
   check_duplicates(mesh, report);
   check_mid_edges(mesh, report);
   check_regions(mesh, report);

@@ -65,7 +65,9 @@ bool in_range(const Mesh& mesh, const std::vector<Index>& indices) {
 void check_lengths(const Mesh& mesh, MeshReport& report) {
   const auto width = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
   if (mesh.cells.empty())
-    refuse(report, "no-cells", "the mesh has no cells; give it tetrahedra or hexahedra");
+    refuse(report, "no-cells",
+           mesh.cell_type == CellType::tri3 ? "the mesh has no faces; give it triangles"
+                                            : "the mesh has no cells; give it tetrahedra or hexahedra");
   if (mesh.cells.size() % width != 0) {
     refuse(report, "array-length",
            join("'cells' has ", mesh.cells.size(), " entries, no multiple of ", width,

@@ -76,6 +76,9 @@ void append_face(const Mesh& mesh, const CellFace& face, std::vector<Index>& nod
 bool check_arrays(const Mesh& mesh, MeshReport& report);
 // Volumes, quality, tangled Tet10 and Hex8, duplicates, regions.
 void check_cells(const Mesh& mesh, MeshReport& report);
+// The same of a mesh of triangles: shapes, and how they hang together.
+void check_triangles(const Mesh& mesh, MeshReport& report);
+void check_sheet(const Mesh& mesh, MeshReport& report);
 // Box, units, coincident and unused nodes, parts.
 void check_nodes(const Mesh& mesh, MeshReport& report);
 // Faces between cells, the boundary and its cavities.

@@ -44,6 +44,57 @@ void add_hexahedra(Mesh& mesh, const std::array<Index, 3>& count, const NodeNumb
   }
 }
 
+// A flat box: a sheet of rectangles, each cut along the diagonal that leaves a checkerboard, so that no
+// direction is preferred. Its upper side looks along the axis that it has no extent in.
+Result<Mesh> sheet_mesh(const BoxMeshDef& def) {
+  int flat = -1, count = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (def.upper[k] != def.lower[k]) continue;
+    flat = k;
+    ++count;
+  }
+  if (count != 1) {
+    return Error{"box mesh: of triangles it is a sheet, and " +
+                 (count == 0 ? std::string("no axis has") : std::to_string(count) + " axes have") +
+                 " the same lower and upper corner; let exactly one"};
+  }
+  const int first = (flat + 1) % 3, second = (flat + 2) % 3;
+  const auto along = [&](int axis) {
+    return static_cast<Index>(def.divisions[static_cast<std::size_t>(axis)]);
+  };
+  const Index n = along(first), m = along(second);
+  Mesh mesh;
+  mesh.cell_type = CellType::tri3;
+  mesh.source = "box";
+  mesh.regions = {"body"};
+  for (Index j = 0; j <= m; ++j) {
+    for (Index i = 0; i <= n; ++i) {
+      Vec3 x = def.lower;
+      if (i > 0) x[first] = i == n ? def.upper[first] : x[first] + (def.upper[first] - x[first]) * i / n;
+      if (j > 0) x[second] = j == m ? def.upper[second] : x[second] + (def.upper[second] - x[second]) * j / m;
+      mesh.nodes.push_back(x);
+    }
+  }
+  for (const int axis : {first, second}) {
+    for (const int end : {0, 1}) {
+      MeshNodeSet side;
+      side.name = {"xyz"[axis], "01"[end]};
+      for (Index k = 0; k <= (axis == first ? m : n); ++k)
+        side.nodes.push_back(axis == first ? end * n + (n + 1) * k : k + (n + 1) * end * m);
+      mesh.node_sets.push_back(std::move(side));
+    }
+  }
+  for (Index j = 0; j < m; ++j) {
+    for (Index i = 0; i < n; ++i) {
+      const Index a = i + (n + 1) * j, b = a + 1, c = b + n + 1, d = a + n + 1;
+      const Index one[6] = {a, b, c, a, c, d}, other[6] = {a, b, d, b, c, d};
+      const auto& cut = (i + j) % 2 == 0 ? one : other;
+      mesh.cells.insert(mesh.cells.end(), cut, cut + 6);
+    }
+  }
+  return mesh;
+}
+
 }  // namespace
 
 Result<Mesh> box_mesh(const BoxMeshDef& def) {
@@ -53,11 +104,13 @@ Result<Mesh> box_mesh(const BoxMeshDef& def) {
       return Error{"box mesh: divisions[" + std::to_string(i) + "] = " + std::to_string(n) +
                    "; give a number from 1 to 1000"};
     }
-    if (!(def.upper[i] > def.lower[i])) {
+    const bool may_be_flat = def.cell_type == CellType::tri3 && def.upper[i] == def.lower[i];
+    if (!may_be_flat && !(def.upper[i] > def.lower[i])) {
       return Error{"box mesh: upper corner must exceed the lower one in every direction, axis " +
                    std::to_string(i) + " runs from " + number(def.lower[i]) + " to " + number(def.upper[i])};
     }
   }
+  if (def.cell_type == CellType::tri3) return sheet_mesh(def);
   const Index nx = def.divisions[0], ny = def.divisions[1], nz = def.divisions[2];
   const double cells = static_cast<double>(nx) * ny * nz * (def.cell_type == CellType::hex8 ? 1 : 6);
   if (const auto why = too_large_for_memory(cells, def.cell_type, MeshUse::check); !why.empty()) {

@@ -114,6 +114,9 @@ Result<Mesh> refine_mesh(const Mesh& mesh, int levels) {
                       ", each makes eight cells of one")};
   }
   if (auto r = check_arrays(mesh); !r) return r.failure();
+  if (levels > 0 && mesh.cell_type == CellType::tri3)
+    return Error{
+        join("refine = ", levels, ": meshes of triangles are not refined here; mesh the surface finer")};
   const double cells = std::pow(8.0, levels) * mesh.cell_count();
   if (const auto why = too_large_for_memory(cells, mesh.cell_type, MeshUse::check);
       levels > 0 && !why.empty())

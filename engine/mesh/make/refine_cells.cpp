@@ -176,6 +176,8 @@ double Bisections::cells() const {
 }  // namespace
 
 Result<RefinedMesh> refine_cells(const Mesh& mesh, std::span<const Index> cells) {
+  if (mesh.cell_type == CellType::tri3)
+    return Error{"triangles are not refined cell by cell; mesh the surface finer where it counts"};
   if (mesh.cell_type == CellType::hex8) {
     return Error{
         "hexahedra are not refined cell by cell, for their neighbors would have nodes in the middle of "

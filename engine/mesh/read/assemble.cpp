@@ -113,6 +113,7 @@ bool is_inverted(const RawMesh& raw, const Index* n) {
 }
 
 void turn_inverted(RawMesh& raw, Mesh& mesh) {
+  if (raw.cell_width == 3) return;
   const auto width = static_cast<std::size_t>(raw.cell_width);
   std::int64_t count = 0;
   std::vector<std::int64_t> examples;
@@ -352,6 +353,7 @@ Mesh assemble(RawMesh raw, double scale) {
   mesh.source = raw.file;
   mesh.cell_type = raw.cell_width == 10  ? CellType::tet10
                    : raw.cell_width == 8 ? CellType::hex8
+                   : raw.cell_width == 3 ? CellType::tri3
                                          : CellType::tet4;
   order_mid_edges(raw, mesh);
   turn_inverted(raw, mesh);

@@ -40,6 +40,7 @@ struct RawMesh {
   std::map<std::int64_t, std::string> region_name, surface_name;  // names that the file gives to numbers
   std::map<std::int64_t, RawSurface> surfaces;                    // of triangles
   std::map<std::int64_t, RawSurface> quadrangles;
+  std::vector<Index> loose_triangles;  // three corners each, of no number: cells where those are triangles
   std::map<std::pair<int, std::int64_t>, MeshNodeSet> node_sets;  // by dimension and number
   std::vector<MeshField> fields;
   std::vector<MeshField> cell_fields;  // of vectors, in the cells so far; shorter where a part lacks them

@@ -10,6 +10,7 @@
 #include "engine/mesh/read/foreign_format.h"
 #include "engine/mesh/read/readers.h"
 #include "isochor/mesh_io.h"
+#include "isochor/solids.h"
 
 namespace isochor {
 
@@ -59,9 +60,14 @@ std::string_view without_comments(std::string_view content) {
   }
 }
 
-RawMesh read_any(const std::string& file) {
+std::string extension_of(const std::string& file) {
   std::string extension = std::filesystem::path(file).extension().string();
   for (char& c : extension) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return extension;
+}
+
+RawMesh read_any(const std::string& file) {
+  const std::string extension = extension_of(file);
   const std::string content = load_file(file);
   if (content.find_first_not_of(" \t\r\n") == content.npos) {
     throw ReadFailure{file + ": the file is empty; export the mesh again"};
@@ -92,9 +98,81 @@ RawMesh read_any(const std::string& file) {
                          "TetGen .node/.ele, Medit .mesh and Abaqus .inp: convert it with 'meshio convert'")};
 }
 
+// Faces in place of cells, for a thin body: what numbers them numbers its regions.
+void take_triangles(RawMesh& raw) {
+  RawMesh flat;
+  flat.file = raw.file;
+  flat.nodes = std::move(raw.nodes);
+  flat.node_label = std::move(raw.node_label);
+  flat.cell_width = 3;
+  flat.region_name = raw.surface_name;
+  flat.node_sets = std::move(raw.node_sets);
+  flat.fields = std::move(raw.fields);
+  flat.stray_lines = raw.stray_lines;
+  for (const auto& [tag, quadrangles] : raw.quadrangles)
+    flat.foreign_faces += static_cast<std::int64_t>(quadrangles.faces.size()) / quadrangles.width;
+  const auto take = [&flat](std::int64_t tag, const std::vector<Index>& faces, int width) {
+    for (std::size_t f = 0; width > 0 && f < faces.size(); f += static_cast<std::size_t>(width)) {
+      flat.cells.insert(flat.cells.end(), &faces[f], &faces[f] + 3);
+      flat.cell_tag.push_back(tag);
+      flat.cell_label.push_back(static_cast<std::int64_t>(flat.cell_label.size()) + 1);
+    }
+  };
+  take(no_tag, raw.loose_triangles, 3);
+  for (const auto& [tag, surface] : raw.surfaces) take(tag, surface.faces, surface.width);
+  if (flat.cells.empty()) {
+    throw ReadFailure{
+        raw.file +
+        (flat.foreign_faces > 0 ? ": the file has quadrangles and no triangles"
+                                : ": the file has no triangles") +
+        ", and a thin body is made of them; mesh its surface with triangles and export it (in Gmsh: "
+        "a physical surface, or 'save all')"};
+  }
+  raw = std::move(flat);
+}
+
 }  // namespace
 
 }  // namespace mesh_files
+
+namespace {
+
+// Every region of a mesh of triangles is a surface, too.
+Mesh with_named_sheets(Mesh mesh) {
+  if (mesh.regions.size() == 1 && mesh.regions[0] == "unassigned") {
+    mesh.regions = {"body"};
+    return mesh;
+  }
+  for (std::size_t r = 0; r < mesh.regions.size(); ++r) {
+    MeshSurface sheet{mesh.regions[r], {}};
+    for (Index c = 0; c < mesh.cell_count(); ++c) {
+      const auto cell = static_cast<std::size_t>(c);
+      if (!mesh.cell_region.empty() && mesh.cell_region[cell] != static_cast<Index>(r)) continue;
+      sheet.faces.insert(sheet.faces.end(), &mesh.cells[3 * cell], &mesh.cells[3 * cell] + 3);
+    }
+    mesh.surfaces.push_back(std::move(sheet));
+  }
+  return mesh;
+}
+
+Result<Mesh> read_triangles(const std::string& path, const MeshReadOptions& options) {
+  const std::string extension = mesh_files::extension_of(path);
+  if (extension != ".obj" && extension != ".stl") {
+    auto raw = mesh_files::read_any(path);
+    mesh_files::take_triangles(raw);
+    return with_named_sheets(mesh_files::assemble(std::move(raw), options.scale));
+  }
+  auto surface = read_surface(path, options.scale);
+  if (!surface) return surface.failure();
+  Mesh mesh;
+  mesh.cell_type = CellType::tri3;
+  mesh.source = path;
+  mesh.nodes = std::move(surface.value().points);
+  mesh.cells = std::move(surface.value().triangles);
+  return mesh;
+}
+
+}  // namespace
 
 Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) {
   if (!std::isfinite(options.scale) || options.scale <= 0) {
@@ -102,6 +180,7 @@ Result<Mesh> read_mesh(const std::string& path, const MeshReadOptions& options) 
         mesh_files::join(path, ": the scale is ", options.scale, "; give a positive number such as 0.001")};
   }
   try {
+    if (options.triangles) return read_triangles(path, options);
     return mesh_files::assemble(mesh_files::read_any(path), options.scale);
   } catch (const mesh_files::ReadFailure& failure) {
     return Error{failure.message};

@@ -128,7 +128,10 @@ void add_cell(const Cursor& at, std::int64_t label, std::int64_t type_number, st
     raw.add_cell(at, label, tag, nodes, vtk_tet10);
   } else if (type.role == Role::triangle && fits) {
     ++raw.flat_cells;
-    if (tag != no_tag) raw.add_face(at, tag, nodes);
+    if (tag != no_tag)
+      raw.add_face(at, tag, nodes);
+    else
+      raw.loose_triangles.insert(raw.loose_triangles.end(), nodes.begin(), nodes.begin() + 3);
   } else if (type.role == Role::tetrahedron || type.role == Role::foreign_cell) {
     ++raw.foreign_cells[type.number < 0 ? join("cells of VTK type ", type_number) : std::string(type.name)];
   } else {

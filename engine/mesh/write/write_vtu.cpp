@@ -123,8 +123,10 @@ VtuText grid_text(const VtkGrid& grid) {
   std::vector<std::int64_t> offsets(cells);
   for (std::size_t c = 0; c < cells; ++c) offsets[c] = static_cast<std::int64_t>((c + 1) * width);
   // VTK's numbers of the linear and the quadratic tetrahedron and of the hexahedron.
-  const std::uint8_t number =
-      grid.cell_type == CellType::tet4 ? 10 : (grid.cell_type == CellType::hex8 ? 12 : 24);
+  const std::uint8_t number = grid.cell_type == CellType::tri3 ? 5
+                              : grid.cell_type == CellType::tet4
+                                  ? 10
+                                  : (grid.cell_type == CellType::hex8 ? 12 : 24);
   const std::vector<std::uint8_t> types(cells, number);
   std::vector<double> coordinates;
   coordinates.reserve(3 * grid.points.size());

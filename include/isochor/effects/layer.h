@@ -7,6 +7,7 @@
 #include "isochor/effects/effect.h"
 #include "isochor/export.h"
 #include "isochor/ids.h"
+#include "isochor/selection.h"
 
 namespace isochor {
 
@@ -35,6 +36,26 @@ struct MembraneDef {
   double thickness = 0;  // [m]
 };
 ISOCHOR_API EffectPtr membrane(MembraneDef def);
+
+// A thin sheet that stretches, shears and bends, and has mass: what a thin body is made of, or a layer on the
+// surface of a solid one. A membrane as above with the bending of a Kirchhoff-Love shell.
+struct ShellDef {
+  std::string name = "shell";
+  BodyId body{};
+  std::vector<std::string> surfaces;  // empty: all of a thin body
+  double young = 0;                   // [Pa]
+  double poisson = 0.5;               // [0, 0.5]
+  double thickness = 0;               // [m]
+  double density = 0;                 // [kg/m^3]; 0: no mass, on solid bodies only
+  // Stiffness of a plate against bending [N m]; 0: young thickness^3 / (12 (1 - poisson^2)). For what is no
+  // solid sheet, such as a fabric.
+  double bending = 0;
+  // Edges at the rim of which both ends are selected keep the direction in which the sheet leaves them:
+  // clamps, and planes of symmetry. Nodes (of the same body) are held by supports.
+  Selection clamped;
+  bool flat = false;  // free of bending when flat, not as the mesh has it
+};
+ISOCHOR_API EffectPtr shell(ShellDef def);
 
 // A thin layer on a surface, fabric or paper, that resists stretching: one thread along every edge.
 struct StrainLimitDef {
