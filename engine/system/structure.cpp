@@ -76,7 +76,7 @@ std::size_t System::table_bytes() const {
 }
 
 bool same_structure(const SystemParts& a, const SystemParts& b) {
-  return a.rest.size() == b.rest.size() && a.treatment == b.treatment &&
+  return a.rest.size() == b.rest.size() && a.ranks == b.ranks && a.treatment == b.treatment &&
          a.border_wide_rows == b.border_wide_rows && same_list(a.stencil_pools, b.stencil_pools) &&
          same_list(a.row_pools, b.row_pools) && same_list(a.prescribers, b.prescribers);
 }
