@@ -196,7 +196,6 @@ void Krylov::measure_wide_rows() {
       check(VecRestoreArray(diagonal, &value), "wide rows");
     }
   }
-  check(PetscObjectStateIncrease(reinterpret_cast<PetscObject>(diagonal)), "wide rows");
   check(MatDiagonalSet(row_diagonal_, diagonal, INSERT_VALUES), "wide rows");
   check(VecDestroy(&unit), "wide rows");
   check(VecDestroy(&column), "wide rows");

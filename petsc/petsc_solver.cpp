@@ -122,13 +122,17 @@ FactorReport PetscSolver::factor_direct() {
   PCFailedReason failed = PC_NOERROR;
   for (room = std::max(room, least_room); room < most_room; room = 2 * room + 20) {
     check(MatMumpsSetIcntl(factor, 14, room), "factoring");
+    // Without this a solver that has been set up looks at new values when it solves, and its inertia is the
+    // old one.
+    check(KSPSetOperators(direct_, matrix_.matrix(), matrix_.matrix()), "factoring");
     check(KSPSetUp(direct_), "factoring");
     check(PCGetFailedReason(pc, &failed), "factoring");
     PetscInt code = 0;
     check(MatMumpsGetInfog(factor, 1, &code), "factoring");
     if (code != -8 && code != -9) break;
-    check(KSPSetOperators(direct_, matrix_.matrix(), matrix_.matrix()), "factoring");
-    check(PetscObjectStateIncrease(reinterpret_cast<PetscObject>(matrix_.matrix())), "factoring");
+    // Told that its values are new, it is factored once more.
+    check(MatAssemblyBegin(matrix_.matrix(), MAT_FINAL_ASSEMBLY), "factoring");
+    check(MatAssemblyEnd(matrix_.matrix(), MAT_FINAL_ASSEMBLY), "factoring");
   }
   if (failed != PC_NOERROR) {
     PetscInt code = 0;

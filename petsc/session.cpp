@@ -15,7 +15,8 @@ namespace {
 
 // What options of the user's override.
 constexpr const char* kDefaults =
-    "-mat_mumps_icntl_13 1 -mat_mumps_icntl_24 1 "
+    "-mat_mumps_icntl_13 1 -mat_mumps_icntl_24 1 -mat_mumps_icntl_8 0 -mat_mumps_cntl_1 0.01 "
+    "-mat_mumps_cntl_3 1e-14 "
     "-fieldsplit_x_ksp_type preonly -fieldsplit_x_pc_type gamg -fieldsplit_x_mg_levels_ksp_type chebyshev "
     "-fieldsplit_x_mg_levels_ksp_max_it 2 -fieldsplit_x_mg_levels_pc_type jacobi "
     "-fieldsplit_lambda_ksp_type preonly -fieldsplit_lambda_pc_type jacobi "
