@@ -62,6 +62,7 @@ class PetscSolver final : public LinearSolver {
   const SymmetricPattern* pattern_ = nullptr;
   SharedMatrix matrix_;
   KSP direct_ = nullptr;
+  PetscInt room_ = 0;  // ICNTL(14), as it had to be
   std::optional<Krylov> krylov_;
 };
 
@@ -107,38 +108,38 @@ void PetscSolver::make_direct() {
   check(KSPSetFromOptions(direct_), "making MUMPS");
 }
 
-// Pivoting may need more room than the analysis foresaw.
+// Pivoting may need more room than the analysis foresaw. What was enough once is kept for the factors to
+// come.
 FactorReport PetscSolver::factor_direct() {
-  constexpr PetscInt least_room = 30, most_room = 3000;  // beyond what was foreseen [%]
+  constexpr PetscInt most_room = 3000;  // beyond what was foreseen [%]
   FactorReport report;
-  if (!direct_) make_direct();
-  PC pc = nullptr;
-  check(KSPGetPC(direct_, &pc), "factoring");
-  check(PCFactorSetUpMatSolverType(pc), "factoring");
   Mat factor = nullptr;
-  check(PCFactorGetMatrix(pc, &factor), "factoring");
-  PetscInt room = 0;
-  check(MatMumpsGetIcntl(factor, 14, &room), "factoring");
+  PetscInt code = 0;
   PCFailedReason failed = PC_NOERROR;
-  for (room = std::max(room, least_room); room < most_room; room = 2 * room + 20) {
-    check(MatMumpsSetIcntl(factor, 14, room), "factoring");
+  for (;;) {
+    if (!direct_) make_direct();
+    PC pc = nullptr;
+    check(KSPGetPC(direct_, &pc), "factoring");
+    check(PCFactorSetUpMatSolverType(pc), "factoring");
+    check(PCFactorGetMatrix(pc, &factor), "factoring");
+    if (room_ > 0) check(MatMumpsSetIcntl(factor, 14, room_), "factoring");
     // Without this a solver that has been set up looks at new values when it solves, and its inertia is the
     // old one.
     check(KSPSetOperators(direct_, matrix_.matrix(), matrix_.matrix()), "factoring");
     check(KSPSetUp(direct_), "factoring");
     check(PCGetFailedReason(pc, &failed), "factoring");
-    PetscInt code = 0;
     check(MatMumpsGetInfog(factor, 1, &code), "factoring");
     if (code != -8 && code != -9) break;
-    // Told that its values are new, it is factored once more.
-    check(MatAssemblyBegin(matrix_.matrix(), MAT_FINAL_ASSEMBLY), "factoring");
-    check(MatAssemblyEnd(matrix_.matrix(), MAT_FINAL_ASSEMBLY), "factoring");
+    check(MatMumpsGetIcntl(factor, 14, &room_), "factoring");
+    if (room_ >= most_room) break;
+    room_ = 2 * room_ + 20;
+    // PETSc does not factor again what has failed.
+    check(KSPDestroy(&direct_), "factoring");
   }
   if (failed != PC_NOERROR) {
-    PetscInt code = 0;
-    check(MatMumpsGetInfog(factor, 1, &code), "factoring");
     report.status = failed == PC_FACTOR_OUTMEMORY ? FactorStatus::out_of_memory : FactorStatus::singular;
     report.message = "MUMPS could not factor the matrix, INFOG(1) = " + std::to_string(code);
+    check(KSPDestroy(&direct_), "factoring");
     return report;
   }
   PetscInt negative = 0, zero = 0, positive = 0, nonzeros = 0;

@@ -28,6 +28,7 @@ struct Step {
   std::vector<Vec3> x;
   int iterations = 0, substeps = 0, factorizations = 0, shifted = 0;
   StepStatus status = StepStatus::converged;
+  std::string reason;
 };
 
 struct Run {
@@ -61,6 +62,7 @@ Run run(const SceneDef& scene, int most_steps, std::shared_ptr<const Ranks> rank
     step.factorizations = report.factorizations;
     step.shifted = report.shifted;
     step.status = report.status;
+    step.reason = report.reason;
     out.steps.push_back(std::move(step));
     if (report.status != StepStatus::converged) break;
   }
@@ -116,11 +118,12 @@ std::string difference(const Run& alone, const Run& shared, double& largest) {
   if (!alone.refusal.empty()) return "the engine alone refuses: " + alone.refusal;
   if (!shared.refusal.empty()) return "refused: " + shared.refusal;
   if (alone.steps.size() != shared.steps.size())
-    return std::to_string(shared.steps.size()) + " steps, alone " + std::to_string(alone.steps.size());
+    return std::to_string(shared.steps.size()) + " steps, alone " + std::to_string(alone.steps.size()) + "; " +
+           shared.steps.back().reason;
   for (std::size_t s = 0; s < alone.steps.size(); ++s) {
     const Step &a = alone.steps[s], &b = shared.steps[s];
     const std::string where = "step " + std::to_string(s + 1) + ": ";
-    if (a.status != b.status) return where + "another status";
+    if (a.status != b.status) return where + "another status: " + b.reason;
     for (std::size_t i = 0; i < a.x.size(); ++i) {
       const Vec3 d = a.x[i] - b.x[i];
       largest = std::max(largest, std::sqrt(dot(d, d)) / alone.length);
