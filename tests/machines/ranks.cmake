@@ -1,6 +1,6 @@
 # Scenes on 1 to 4 ranks against the engine alone. Ranks need not have a core each, and may be root's in a container.
 set(_ranks_environment OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMP_NUM_THREADS=1
-    "OMPI_MCA_rmaps_base_oversubscribe=1" "OMPI_MCA_hwloc_base_binding_policy=none")
+    "OMPI_MCA_rmaps_base_oversubscribe=1" "OMPI_MCA_hwloc_base_binding_policy=none" OMPI_MCA_mpi_yield_when_idle=1)
 target_compile_definitions(isochor_machines_tests PRIVATE ISOCHOR_MPIRUN="${MPIEXEC_EXECUTABLE}")
 get_property(_entries DIRECTORY PROPERTY TESTS)
 list(FILTER _entries INCLUDE REGEX "^machines\\.")
