@@ -105,9 +105,13 @@ void print_accuracy(const Accuracy& a) {
     table.add({e.name, number(e.value, 6), e.unit, number(e.indicator, 2),
                e.relative ? number(100 * *e.relative, 2) + " %" : "", number(e.other, 6)});
   }
+  std::string places;
+  for (const AccuracyEntry& e : a.entries) {
+    if (!e.where.empty()) places += "  " + e.where + "\n";
+  }
   std::printf(
-      "\n%s  compared with %s; %.2f s. Without the errors of time steps and of the shape of the mesh.\n",
-      table.text("  ").c_str(), a.how.c_str(), a.seconds);
+      "\n%s%s  compared with %s; %.2f s. Without the errors of time steps and of the shape of the mesh.\n",
+      table.text("  ").c_str(), places.c_str(), a.how.c_str(), a.seconds);
 }
 
 }  // namespace
@@ -198,6 +202,7 @@ int run(const RunArguments& a, std::shared_ptr<const Ranks> ranks) {
   options.resume = a.resume;
   options.stop = stop_wanted;
   options.ranks = ranks;
+  options.origins = a.accuracy;
   options.log = [&](const std::string& text) {
     if (!a.quiet && first_rank) std::fprintf(stderr, "isochor: note: %s\n", text.c_str());
   };

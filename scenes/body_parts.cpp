@@ -56,31 +56,33 @@ Result<std::vector<double>> read_field(const CellField& field, const std::string
 
 namespace {
 
-// Every entry as often as its cell has children.
+// Every cell with the entry of the one that it is of. A list of another length is left to who checks it.
 template <class T>
-std::vector<T> handed_down(const std::vector<T>& values, int levels) {
-  const auto children = std::size_t{1} << (3 * levels);
+std::vector<T> handed_down(const std::vector<T>& values, std::span<const Index> parent) {
   std::vector<T> out;
-  out.reserve(children * values.size());
-  for (const T& v : values) out.insert(out.end(), children, v);
+  out.reserve(parent.size());
+  for (const Index c : parent) {
+    if (static_cast<std::size_t>(c) < values.size()) out.push_back(values[static_cast<std::size_t>(c)]);
+  }
   return out;
 }
 
 }  // namespace
 
-Result<MaterialDef> refined_numbers(const MaterialDef& def, const std::string& folder, int levels) {
+Result<MaterialDef> refined_numbers(const MaterialDef& def, const std::string& folder,
+                                    std::span<const Index> parent) {
   MaterialDef out = def;
-  if (levels == 0) return out;
+  if (parent.empty()) return out;
   const auto hand_down = [&](const char* name, CellField& field) -> Result<void> {
     if (!field.given()) return {};
     auto values = read_field(field, folder);
     if (!values) return Error{std::string(name) + ": " + values.error()};
-    field = {handed_down(values.value(), levels), ""};
+    field = {handed_down(values.value(), parent), ""};
     return {};
   };
   if (auto r = hand_down("stiffness_field", out.stiffness_field); !r) return r.failure();
   if (auto r = hand_down("poisson_field", out.poisson_field); !r) return r.failure();
-  for (SceneFibers& f : out.fibers) f.directions = handed_down(f.directions, levels);
+  for (SceneFibers& f : out.fibers) f.directions = handed_down(f.directions, parent);
   return out;
 }
 

@@ -11,6 +11,7 @@ Result<void> add_bodies(const SceneDef& scene, const BuildOptions& options, Buil
     auto made = make_body(scene.bodies[b], scene.folder, place("bodies", b));
     if (!made) return made.failure();
     built.surfaces.push_back(std::move(made.value().surface));
+    built.parents.push_back(std::move(made.value().parent));
     if (options.parts) options.parts->bodies.push_back(made.value().def);
     auto id = built.world.add_body(std::move(made.value().def));
     if (!id) return id.failure();

@@ -1,6 +1,8 @@
 // A body of a scene, with its mesh read and its materials made.
+#include <algorithm>
 #include <cmath>
 
+#include "engine/base/text.h"
 #include "isochor/mesh_io.h"
 #include "scenes/body_parts.h"
 #include "scenes/check_values.h"
@@ -50,19 +52,119 @@ Result<void> name_places(const SceneBody& body, const std::string& folder, Mesh&
   return add_all("node_sets", body.node_sets, add_node_set);
 }
 
-// Every cell into eight, where the body asks for it. What is chosen by place was chosen before, so that it
-// stays the same surface at every level.
-Result<void> refine(const SceneBody& body, Mesh& mesh) {
-  if (body.refine == 0) return {};
-  if (std::holds_alternative<LatticeMesh>(body.mesh)) {
-    return Error{
-        "refine = " + std::to_string(body.refine) +
-        ", but the mesh is a lattice, whose cubes fit its surface better when they are made smaller; "
-        "halve mesh.lattice.spacing instead"};
+Error not_for_lattices(const std::string& what) {
+  return Error{what +
+               ", but the mesh is a lattice, whose cubes fit its surface better when they are made smaller; "
+               "halve mesh.lattice.spacing instead"};
+}
+
+// Nodes that a cell of the place has one of; all where nothing says where they are.
+Result<std::vector<std::uint8_t>> nodes_of(const RefinedPlace& place, const Mesh& mesh) {
+  std::vector<std::uint8_t> in(mesh.nodes.size(), 1);
+  if (!place.surfaces.empty()) {
+    MeshSelection on;
+    on.of = place.surfaces;
+    const auto nodes = select_nodes(mesh, on);
+    if (!nodes) return nodes.failure();
+    std::fill(in.begin(), in.end(), std::uint8_t{0});
+    for (const Index n : nodes.value()) in[static_cast<std::size_t>(n)] = 1;
   }
-  auto finer = refine_mesh(mesh, body.refine);
-  if (!finer) return Error{"refine: " + finer.error(), finer.failure().kind};
-  mesh = std::move(finer).value();
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    const Vec3& x = mesh.nodes[i];
+    for (int k = 0; place.box && k < 3; ++k) {
+      if (x[k] < (*place.box)[0][k] || x[k] > (*place.box)[1][k]) in[i] = 0;
+    }
+    if (place.sphere) {
+      const Vec3 d = x - place.sphere->center;
+      if (dot(d, d) > place.sphere->radius * place.sphere->radius) in[i] = 0;
+    }
+  }
+  return in;
+}
+
+Result<std::vector<std::uint8_t>> regions_of(const RefinedPlace& place, const Mesh& mesh) {
+  std::vector<std::uint8_t> in(std::max<std::size_t>(1, mesh.regions.size()), place.regions.empty() ? 1 : 0);
+  for (const std::string& name : place.regions) {
+    const auto found = std::find(mesh.regions.begin(), mesh.regions.end(), name);
+    if (found == mesh.regions.end()) {
+      std::string all;
+      for (const std::string& r : mesh.regions) all += (all.empty() ? "" : ", ") + r;
+      return Error{"regions: there is no \"" + name + "\"; the mesh has " + (all.empty() ? "none" : all)};
+    }
+    in[static_cast<std::size_t>(found - mesh.regions.begin())] = 1;
+  }
+  return in;
+}
+
+Result<std::vector<Index>> cells_of(const RefinedPlace& place, const Mesh& mesh, const std::string& folder) {
+  const auto nodes = nodes_of(place, mesh);
+  if (!nodes) return Error{"surfaces: " + nodes.error()};
+  const auto regions = regions_of(place, mesh);
+  if (!regions) return regions.failure();
+  const auto per = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
+  const auto fits = [&](Index c) {
+    const auto cell = static_cast<std::size_t>(c);
+    const auto region =
+        mesh.cell_region.empty() ? std::size_t{0} : static_cast<std::size_t>(mesh.cell_region[cell]);
+    const Index* first = mesh.cells.data() + cell * per;
+    return regions.value()[region] != 0 && std::any_of(first, first + per, [&](Index n) {
+             return nodes.value()[static_cast<std::size_t>(n)] != 0;
+           });
+  };
+  const auto given = place.cells.given() ? read_field(place.cells, folder)
+                                         : Result<std::vector<double>>(std::vector<double>{});
+  if (!given) return Error{"cells: " + given.error()};
+  std::vector<Index> out;
+  for (Index c = 0; !place.cells.given() && c < mesh.cell_count(); ++c) {
+    if (fits(c)) out.push_back(c);
+  }
+  for (std::size_t k = 0; k < given.value().size(); ++k) {
+    const double number_of = given.value()[k];
+    if (!(number_of >= 0) || number_of >= mesh.cell_count() || number_of != std::floor(number_of)) {
+      return Error{"cells[" + std::to_string(k) + "] = " + number(number_of) + "; the mesh has cells 0 to " +
+                   std::to_string(mesh.cell_count() - 1) + " when they are refined"};
+    }
+    if (fits(static_cast<Index>(number_of))) out.push_back(static_cast<Index>(number_of));
+  }
+  if (out.empty()) return Error{"cells: none of the mesh fits"};
+  return out;
+}
+
+void hand_down(std::vector<Index>& parent, std::span<const Index> of_finer) {
+  std::vector<Index> out(of_finer.begin(), of_finer.end());
+  for (Index& c : out) c = parent.empty() ? c : parent[static_cast<std::size_t>(c)];
+  parent = std::move(out);
+}
+
+// Every cell into eight, then those of places, where the body asks for it. What is chosen by name was chosen
+// before, so that it stays the same surface at every level.
+Result<void> refine(const SceneBody& body, const std::string& folder, Mesh& mesh,
+                    std::vector<Index>& parent) {
+  const bool lattice = std::holds_alternative<LatticeMesh>(body.mesh);
+  if (body.refine != 0) {
+    if (lattice) return not_for_lattices("refine = " + std::to_string(body.refine));
+    auto finer = refine_mesh(mesh, body.refine);
+    if (!finer) return Error{"refine: " + finer.error(), finer.failure().kind};
+    mesh = std::move(finer).value();
+    for (Index c = 0; c < mesh.cell_count(); ++c) parent.push_back(c >> (3 * body.refine));
+  }
+  for (std::size_t k = 0; k < body.refine_where.size(); ++k) {
+    const RefinedPlace& where = body.refine_where[k];
+    const std::string who = place("refine_where", k);
+    if (!where.box && !where.sphere && where.surfaces.empty() && where.regions.empty() &&
+        !where.cells.given())
+      return Error{who +
+                   " says nowhere; give box, sphere, surfaces, regions or cells, or use refine for all"};
+    if (lattice) return not_for_lattices(who + " is given");
+    for (int level = 0; level < where.levels; ++level) {
+      const auto cells = cells_of(where, mesh, folder);
+      if (!cells) return Error{who + "." + cells.error()};
+      auto finer = refine_cells(mesh, cells.value());
+      if (!finer) return Error{who + ": " + finer.error(), finer.failure().kind};
+      mesh = std::move(finer.value().mesh);
+      hand_down(parent, finer.value().parent);
+    }
+  }
   return {};
 }
 
@@ -80,9 +182,10 @@ Result<MadeBody> make_body(const SceneBody& body, const std::string& folder, con
   if (!mesh) return Error{where + ".mesh: " + mesh.error()};
   def.mesh = std::move(mesh).value();
   if (auto r = name_places(body, folder, def.mesh); !r) return Error{where + "." + r.error()};
-  if (auto r = refine(body, def.mesh); !r) return Error{where + "." + r.error(), r.failure().kind};
+  if (auto r = refine(body, folder, def.mesh, made.parent); !r)
+    return Error{where + "." + r.error(), r.failure().kind};
   for (std::size_t m = 0; m < body.materials.size(); ++m) {
-    auto refined = refined_numbers(body.materials[m], folder, body.refine);
+    auto refined = refined_numbers(body.materials[m], folder, made.parent);
     auto material = refined ? make_material(refined.value(), folder, &def.mesh) : refined.failure();
     if (!material) return Error{where + "." + place("materials", m) + ": " + material.error()};
     def.materials.push_back(

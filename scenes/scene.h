@@ -119,13 +119,25 @@ struct LatticeMesh {
   bool keep_apart = true;
 };
 
+// Cells that are refined beyond their neighbors: those that fit all that is given.
+struct RefinedPlace {
+  std::optional<std::array<Vec3, 2>> box;  // lower and upper corner, with a node of the cell between them [m]
+  std::optional<SpherePlace> sphere;       // with a node of the cell inside
+  std::vector<std::string> surfaces;       // with a node of the cell on one of them
+  std::vector<std::string> regions;
+  CellField cells;  // by number, in the mesh as it is when their turn comes
+  int levels = 1;   // so many times, each time all that fit
+};
+
 struct SceneBody {
   std::string name = "body";
   std::variant<MeshFile, BoxMeshDef, LatticeMesh> mesh;
   // Named by where they are, beside those of the mesh file; in the placed mesh, after scale, turn and offset.
   std::vector<MeshSelection> surfaces, node_sets;
-  // Then every cell is cut into eight, so often. Numbers cell by cell are those of the mesh before that.
+  // Then every cell is cut into eight, so often, and the cells of these places once more, one after the
+  // other. Numbers cell by cell are those of the mesh before that.
   int refine = 0;
+  std::vector<RefinedPlace> refine_where;
   Element element = Element::tet4_edge_smoothed;
   std::vector<MaterialDef> materials;
   std::optional<double> guard_stiffness;  // see BodyDef
@@ -259,8 +271,10 @@ struct BuiltScene {
   std::vector<BodyId> bodies = {};
   std::map<const EffectKind*, std::vector<EffectId>> effects = {};  // in the order of the scene's lists
   std::vector<DisplaySurface> surfaces = {};                        // by body; empty where its mesh is shown
-  std::vector<Obstacle> obstacles = {};                             // by contact, with what their files hold
-  std::vector<Obstacle> rigid_shapes = {};                          // by rigid body, likewise
+  // By body: of each cell that of the mesh before it was refined; empty where it was not.
+  std::vector<std::vector<Index>> parents = {};
+  std::vector<Obstacle> obstacles = {};     // by contact, with what their files hold
+  std::vector<Obstacle> rigid_shapes = {};  // by rigid body, likewise
 
   std::span<const EffectId> ids(const EffectKind& kind) const {
     const auto found = effects.find(&kind);

@@ -107,17 +107,35 @@ Parameter parameter_from(const iso_world& w, const iso_parameter& p) {
       return constant_from(w, p);
     case ISO_PARAMETER_SHAPE:
       return Parameter::shape(body(), vectors(p.motion, p.count, p.stride, "motion"));
+    case ISO_PARAMETER_INITIAL_VELOCITY:
+      return Parameter::initial_velocity(body(), vectors(p.motion, p.count, p.stride, "motion"));
     default:
       refuse("kind = " + std::to_string(p.kind) + "; give one of ISO_PARAMETER_..., 0 to " +
-             std::to_string(ISO_PARAMETER_SHAPE));
+             std::to_string(ISO_PARAMETER_INITIAL_VELOCITY));
   }
 }
 
+GradientQuery::Mode mode_from(int32_t mode) {
+  if (mode < ISO_GRADIENTS_AUTOMATIC || mode > ISO_GRADIENTS_TANGENT)
+    refuse("query->mode = " + std::to_string(mode) + "; give one of ISO_GRADIENTS_..., 0 to 2");
+  return static_cast<GradientQuery::Mode>(mode);
+}
+
+std::vector<Parameter> parameters_from(const iso_world& w, const iso_parameter* parameters, size_t count) {
+  std::vector<Parameter> out;
+  if (count > 0) check_size(parameters, "query->parameters");
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::string where = place("parameters", k);
+    const iso_parameter p = taken(nth(parameters, k), where.c_str());
+    out.push_back(at_place(where, [&] { return parameter_from(w, p); }));
+    out.back().step = p.step;
+  }
+  return out;
+}
+
 GradientQuery query_from(const iso_world& w, const iso_gradient_query& given) {
-  if (given.mode < ISO_GRADIENTS_AUTOMATIC || given.mode > ISO_GRADIENTS_TANGENT)
-    refuse("query->mode = " + std::to_string(given.mode) + "; give one of ISO_GRADIENTS_..., 0 to 2");
   GradientQuery query;
-  query.mode = static_cast<GradientQuery::Mode>(given.mode);
+  query.mode = mode_from(given.mode);
   query.unstable = given.unstable != 0;
   if (given.output_count > 0) check_size(given.outputs, "query->outputs");
   for (std::size_t j = 0; j < given.output_count; ++j) {
@@ -125,13 +143,38 @@ GradientQuery query_from(const iso_world& w, const iso_gradient_query& given) {
     const iso_output o = taken(nth(given.outputs, j), where.c_str());
     query.outputs.push_back(at_place(where, [&] { return output_from(*w.world, o); }));
   }
-  if (given.parameter_count > 0) check_size(given.parameters, "query->parameters");
-  for (std::size_t k = 0; k < given.parameter_count; ++k) {
-    const std::string where = place("parameters", k);
-    const iso_parameter p = taken(nth(given.parameters, k), where.c_str());
-    query.parameters.push_back(at_place(where, [&] { return parameter_from(w, p); }));
-    query.parameters.back().step = p.step;
+  query.parameters = parameters_from(w, given.parameters, given.parameter_count);
+  return query;
+}
+
+TrajectoryQuery query_from(const iso_world& w, const iso_trajectory_query& given) {
+  TrajectoryQuery query;
+  query.mode = mode_from(given.mode);
+  query.kept_states = given.kept_states;
+  if (given.step_count > 0) {
+    const double* first = &isochor::c::given(given.steps, "query->steps");
+    query.steps.assign(first, first + given.step_count);
   }
+  if (given.term_count > 0) {
+    check_size(given.terms, "query->terms");
+    (void)isochor::c::given(given.term_steps, "query->term_steps");
+  }
+  const std::size_t outputs = given.term_output ? given.output_count : given.term_count;
+  if (given.term_output && outputs > given.term_count)
+    refuse("query->output_count = " + std::to_string(outputs) + " for " + std::to_string(given.term_count) +
+           " terms; give every output a term");
+  query.outputs.resize(outputs);
+  for (std::size_t k = 0; k < given.term_count; ++k) {
+    const std::string where = place("terms", k);
+    const std::size_t to = given.term_output ? static_cast<std::size_t>(given.term_output[k]) : k;
+    if (given.term_output && (given.term_output[k] < 0 || to >= outputs))
+      refuse("query->term_output[" + std::to_string(k) + "] = " + std::to_string(given.term_output[k]) +
+             "; there are outputs 0 to " + std::to_string(outputs - 1));
+    const iso_output o = taken(nth(given.terms, k), where.c_str());
+    query.outputs[to].terms.push_back(
+        {given.term_steps[k], at_place(where, [&] { return output_from(*w.world, o); })});
+  }
+  query.parameters = parameters_from(w, given.parameters, given.parameter_count);
   return query;
 }
 
@@ -180,6 +223,21 @@ extern "C" iso_status iso_gradients(iso_world* world, const iso_gradient_query* 
     const GradientQuery asked = query_from(*world, given);
     KeptGradients made = kept(need(w.gradients(asked)), w, asked.parameters);
     // Moved as a whole: vectors keep their places, and so do the names that `undecided` points to.
+    world->answers.gradients = std::move(made);
+    show(world->answers.gradients, *told);
+    told.give();
+  });
+}
+
+extern "C" iso_status iso_trajectory_gradients(iso_world* world, const iso_trajectory_query* query,
+                                               iso_gradient_table* out) {
+  return enter(world, "iso_trajectory_gradients", [&] {
+    World& w = *world->world;
+    Filled<iso_gradient_table> told(out, "out");
+    const iso_trajectory_query given = taken(query, "query");
+    need(w.compile());
+    const TrajectoryQuery asked = query_from(*world, given);
+    KeptGradients made = kept(need(w.trajectory_gradients(asked)), w, asked.parameters);
     world->answers.gradients = std::move(made);
     show(world->answers.gradients, *told);
     told.give();

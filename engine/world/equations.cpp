@@ -35,7 +35,8 @@ double gauge_value(const EffectInstance& effect, const std::string& quantity, co
 
 Equations equations_at(const EquationsAt& where, const State& state, std::span<const GaugeName> gauges) {
   const System& s = where.system;
-  const SaddleProblem p = where.data.problem(s, state, state.t);
+  SaddleProblem p = where.data.problem(s, state, state.t);
+  if (where.inertia) where.inertia->add_to(p);
   Assembly& assembly = where.assembly;
   assembly.set_increment(p.increment, p.memory);
   if (s.has_lag()) assembly.renew_lag(state.x, state.lambda, p.prescribed);
@@ -43,6 +44,12 @@ Equations equations_at(const EquationsAt& where, const State& state, std::span<c
   Equations out(s);
   assembly.residual(out.force);
   for (std::size_t i = 0; i < out.force.size(); ++i) out.force[i] -= p.force[i];
+  if (p.mass_scale > 0) {
+    std::vector<Vec3> off(out.force.size()), pull(off.size());
+    for (std::size_t i = 0; i < off.size(); ++i) off[i] = state.x[i] - p.predicted[i];
+    assembly.mass_times(off, pull);
+    for (std::size_t i = 0; i < off.size(); ++i) out.force[i] += p.mass_scale * pull[i];
+  }
   assembly.row_values(out.theta);
   for (std::size_t r = 0; r < out.theta.size(); ++r) out.theta[r] -= p.target[r];
   add_compliance(s, -1, state.lambda, out.theta);
@@ -59,7 +66,8 @@ Equations equations_at(const EquationsAt& where, const State& state, std::span<c
   return out;
 }
 
-Result<Equations> World::Impl::equations_beside(Description next, std::span<const GaugeName> gauges_wanted) {
+Result<Equations> World::Impl::equations_beside(Description next, std::span<const GaugeName> gauges_wanted,
+                                                const Inertia* inertia) {
   auto built = build_beside(next);
   if (!built) return built.failure();
   SystemParts& parts = built.value().parts;
@@ -75,7 +83,8 @@ Result<Equations> World::Impl::equations_beside(Description next, std::span<cons
     return Error{"the scene has other unknowns or rows then, so that there is no derivative"};
   IncrementData its_data(*changed, amounts.gravity, state, weight);
   Assembly its_assembly(changed, *parallel);
-  return equations_at({*changed, its_assembly, its_data, built.value().instances}, state, gauges_wanted);
+  return equations_at({*changed, its_assembly, its_data, built.value().instances, inertia}, state,
+                      gauges_wanted);
 }
 
 }  // namespace isochor

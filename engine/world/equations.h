@@ -28,12 +28,25 @@ struct GaugeName {
 double gauge_value(const EffectInstance& effect, const std::string& quantity, const System& system,
                    const State& state);
 
+// What an increment in which bodies move adds at the place where it is evaluated.
+struct Inertia {
+  double mass_scale = 0;        // [1/s^2]
+  std::vector<Vec3> predicted;  // [m]
+  StencilIncrement increment;   // what stencils look back over
+  void add_to(SaddleProblem& problem) const {
+    problem.mass_scale = mass_scale;
+    problem.predicted = predicted;
+    problem.increment = increment;
+  }
+};
+
 // Who evaluates them.
 struct EquationsAt {
   const System& system;
   Assembly& assembly;
   IncrementData& data;
   const std::vector<std::unique_ptr<EffectInstance>>& instances;
+  const Inertia* inertia = nullptr;  // null: there is none
 };
 Equations equations_at(const EquationsAt& where, const State& state, std::span<const GaugeName> gauges);
 

@@ -208,6 +208,11 @@ Result<Adjoint> World::Impl::Equilibrium::adjoint_of(const OutputSeed& seed) {
   std::vector<Vec3> force(dx.size()), pull(dx.size());
   w.assembly().hessian_times(dx, force);
   w.assembly().constraint_force(dlambda, pull);
+  if (inertia && inertia->mass_scale > 0) {
+    std::vector<Vec3> heavy(dx.size());
+    w.assembly().mass_times(dx, heavy);
+    for (std::size_t i = 0; i < dx.size(); ++i) force[i] += inertia->mass_scale * heavy[i];
+  }
   for (std::size_t i = 0; i < dx.size(); ++i) {
     out.given[i] -= force[i] + pull[i];
     out.force[i] -= seed.through[i];

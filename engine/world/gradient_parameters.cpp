@@ -85,6 +85,12 @@ Parameter Parameter::shape(BodyId body, std::vector<Vec3> motion) {
   return p;
 }
 
+Parameter Parameter::initial_velocity(BodyId body, std::vector<Vec3> motion) {
+  Parameter p = shape(body, std::move(motion));
+  p.kind = Kind::velocity;
+  return p;
+}
+
 namespace {
 
 // Five values of a smooth function around or on one side of where it is; errors go with the fourth power of
@@ -212,6 +218,10 @@ Result<Equations> World::Impl::Equilibrium::change_by(const Parameter& p) {
     case Parameter::Kind::constant:
     case Parameter::Kind::shape:
       return change_beside(p);
+    case Parameter::Kind::velocity:
+      if (!inertia)
+        return Error{"gradients: an equilibrium has no velocity to begin with; ask trajectory_gradients()"};
+      return check_motion(p);
   }
   return change;
 }
@@ -259,7 +269,44 @@ Result<Equations> World::Impl::Equilibrium::change_by_density(const Parameter& p
   const Vec3 g = w.data->gravity(w.state.t);
   Equations change(w.system(), gauges.size());
   for (std::size_t i = 0; i < volume.size(); ++i) change.force[i] -= volume[i] * g;
+  if (inertia && inertia->mass_scale > 0) add_mass_change(body, regions.value(), change);
   return change;
+}
+
+// What resists, per unit of density.
+void World::Impl::Equilibrium::add_mass_change(const BodyData& body, std::span<const std::size_t> regions,
+                                               Equations& change) const {
+  const auto rest = w.system().parts().rest;
+  std::vector<Vec3> off(rest.size());
+  for (std::size_t i = 0; i < off.size(); ++i)
+    off[i] = inertia->mass_scale * (w.state.x[i] - inertia->predicted[i]);
+  std::vector<double> mass(rest.size(), 0);
+  std::vector<MassEntry> entries;
+  for (const std::size_t r : regions) {
+    const std::span<const Index> cells = body.regions[r].cells;
+    if (w.system().block_mass().empty())
+      add_lumped_mass(*body.reference, rest, body.global_cells, cells, 1, mass);
+    else
+      add_consistent_mass(*body.reference, rest, body.global_cells, cells, 1, entries);
+  }
+  for (std::size_t i = 0; i < off.size(); ++i) change.force[i] += mass[i] * off[i];
+  for (const MassEntry& e : entries) {
+    change.force[at(e.row)] += e.value * off[at(e.col)];
+    if (e.row != e.col) change.force[at(e.col)] += e.value * off[at(e.row)];
+  }
+}
+
+// Nothing of an increment depends on the velocities before the first.
+Result<Equations> World::Impl::Equilibrium::check_motion(const Parameter& p) const {
+  if (auto r = check_body(p.body, "initial_velocity"); !r) return r.failure();
+  const BodyData& body = w.said.builder.body(p.body);
+  if (p.motion.size() != at(body.mesh.node_count()) ||
+      !std::all_of(p.motion.begin(), p.motion.end(), finite)) {
+    return Error{"gradients: initial_velocity: motion has " + std::to_string(p.motion.size()) +
+                 " vectors, body \"" + body.name + "\" " + std::to_string(body.mesh.node_count()) +
+                 " nodes; give one a node of World::mesh(), all finite"};
+  }
+  return Equations(w.system(), gauges.size());
 }
 
 Result<Equations> World::Impl::Equilibrium::change_by_stiffness(const Parameter& p) {
@@ -352,7 +399,7 @@ Result<Equations> World::Impl::Equilibrium::change_beside(const Parameter& p) {
   const auto equations = [&](int steps) -> Result<Equations> {
     auto next = beside(p, value + steps * h, refused);
     if (!next) return Error{who + next.error()};
-    auto out = w.equations_beside(std::move(next).value(), gauges);
+    auto out = w.equations_beside(std::move(next).value(), gauges, inertia);
     if (!out) return Error{who + out.error()};
     return out;
   };

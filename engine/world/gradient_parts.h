@@ -26,7 +26,8 @@ struct Adjoint {
 };
 
 struct World::Impl::Equilibrium {
-  explicit Equilibrium(Impl& world);
+  // At the state of the world; with `inertia` at the end of an increment that a body moves in.
+  explicit Equilibrium(Impl& world, const Inertia* inertia = nullptr);
 
   // Refuses what is no equilibrium, or has no derivative.
   Result<void> linearize(bool unstable);
@@ -49,6 +50,7 @@ struct World::Impl::Equilibrium {
   std::vector<Vec3> way_of(std::span<const Vec3> position) const;
 
   Impl& w;
+  const Inertia* inertia;
   SaddlePoint& method;
   SaddleReport report;
   Equations here;
@@ -57,8 +59,12 @@ struct World::Impl::Equilibrium {
   std::vector<double> dlambda;
 
  private:
-  SaddleProblem problem() { return w.data->problem(w.system(), w.state, w.state.t); }
-  EquationsAt present() { return {w.system(), w.assembly(), *w.data, w.instances}; }
+  SaddleProblem problem() {
+    SaddleProblem p = w.data->problem(w.system(), w.state, w.state.t);
+    if (inertia) inertia->add_to(p);
+    return p;
+  }
+  EquationsAt present() { return {w.system(), w.assembly(), *w.data, w.instances, inertia}; }
   Result<void> check_balance();
   Result<void> seed_gauge(const Output& output, OutputSeed& seed);
   Result<void> seed_reaction(const Output& output, OutputSeed& seed);
@@ -69,6 +75,8 @@ struct World::Impl::Equilibrium {
   Result<Equations> change_by_amount(const Parameter& parameter);
   Result<Equations> change_by_stiffness(const Parameter& parameter);
   Result<Equations> change_by_density(const Parameter& parameter);
+  void add_mass_change(const BodyData& body, std::span<const std::size_t> regions, Equations& change) const;
+  Result<Equations> check_motion(const Parameter& parameter) const;
   Result<Equations> change_beside(const Parameter& parameter);
   Result<Description> beside(const Parameter& parameter, double at_value, bool& refused_by_law);
   Result<CellTerms> cell_terms(BodyId body) const;

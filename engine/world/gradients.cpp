@@ -46,8 +46,9 @@ Result<void> check_memory(const Builder& builder) {
 
 }  // namespace
 
-World::Impl::Equilibrium::Equilibrium(Impl& world)
+World::Impl::Equilibrium::Equilibrium(Impl& world, const Inertia* its_inertia)
     : w(world),
+      inertia(its_inertia),
       method(world.methods.chosen()),
       dx(world.state.x.size()),
       dlambda(world.state.lambda.size()) {}

@@ -17,6 +17,7 @@ struct ScenePart {
 
 struct Equations;
 struct GaugeName;
+struct Inertia;
 
 // Positions and velocities that a world has no more use for and that a host still looks at.
 struct LeftViews {
@@ -106,6 +107,7 @@ struct World::Impl {
   // derivatives.cpp
   struct Derivatives;
   struct Equilibrium;  // gradient_parts.h
+  class Trajectory;    // trajectory.cpp
   Result<Response> derivative(Derivatives& d, Amount* amount, PointInBody point, const Vec3& force);
 
   // checkpoint.cpp
@@ -120,7 +122,8 @@ struct World::Impl {
   Result<void> compile_like(Impl& other);              // renewal.cpp
   Result<BuiltParts> build_beside(Description& next);  // renewal.cpp
   // The equations of a changed scene at the present state; one with other nodes, rows or memory is refused.
-  Result<Equations> equations_beside(Description next, std::span<const GaugeName> gauges_wanted);
+  Result<Equations> equations_beside(Description next, std::span<const GaugeName> gauges_wanted,
+                                     const Inertia* inertia = nullptr);
 
  private:
   Result<void> compile_now();

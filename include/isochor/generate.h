@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "isochor/export.h"
 #include "isochor/mesh.h"
@@ -26,5 +27,15 @@ ISOCHOR_API Mesh to_tet10(const Mesh& mesh);
 // fields at nodes are interpolated, those in cells and regions handed down. Tets are cut along their shortest
 // inner diagonal.
 ISOCHOR_API Result<Mesh> refine_mesh(const Mesh& mesh, int levels = 1);
+
+struct RefinedMesh {
+  Mesh mesh;
+  std::vector<Index> parent;  // of each cell, a cell of the mesh before
+};
+// The cells with these numbers cut into eight, neighbors into as few as makes all fit together: tets are
+// bisected at their longest edges, in an order that is one for the whole mesh. What is kept is as above.
+// Repeated, it leaves a bounded number of shapes in practice (no bound is proven). Errors: hexahedra, cells
+// that there are not, arrays that contradict each other, more than memory holds.
+ISOCHOR_API Result<RefinedMesh> refine_cells(const Mesh& mesh, std::span<const Index> cells);
 
 }  // namespace isochor

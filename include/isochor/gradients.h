@@ -53,7 +53,8 @@ struct ISOCHOR_API Parameter {
     stiffness,
     cells,
     constant,
-    shape
+    shape,
+    velocity
   };
   Kind kind = Kind::amount;
   EffectId effect{};
@@ -87,6 +88,9 @@ struct ISOCHOR_API Parameter {
                                std::function<Result<EffectPtr>(double)> definition);
   // Rest positions move by p times `motion`, one vector a node of World::mesh(body).
   static Parameter shape(BodyId body, std::vector<Vec3> motion);
+  // Of trajectories: velocities at the start change by p times `motion`, one vector a node of
+  // World::mesh(body).
+  static Parameter initial_velocity(BodyId body, std::vector<Vec3> motion);
 };
 
 struct GradientQuery {
@@ -111,6 +115,36 @@ struct Gradients {
   bool adjoint = false;  // how it was found
 
   double of(std::size_t output, std::size_t parameter) const { return by[output][parameter].front(); }
+};
+
+// A number that a trajectory shows: the sum of outputs, each at the end of one of its steps.
+struct TimedOutput {
+  struct Term {
+    Index step = 0;  // from 1; 0: where the trajectory begins
+    Output output;   // positions, material points, distances, gauges
+  };
+  std::vector<Term> terms;
+};
+
+struct TrajectoryQuery {
+  std::vector<double> steps;  // lengths of the increments, from the state that the world is at [s]
+  std::vector<TimedOutput> outputs;
+  std::vector<Parameter> parameters;
+  GradientQuery::Mode mode = GradientQuery::Mode::automatic;
+  // How many states of the way are kept; from the last one before it a part of the way is made again when its
+  // turn comes. 0: all, and nothing is made twice. About the root of the number of steps takes least memory.
+  Index kept_states = 0;
+};
+
+// Where an error of discretization comes from: what World::error_origins() finds.
+struct ErrorOrigin {
+  // Parts of one, by number of the body and cell of World::mesh(); empty for bodies that are not there. All
+  // zero where nothing is in error: a body at rest, or strained by the same everywhere.
+  std::vector<std::vector<double>> cells;
+  // False: the parts are those of the error of the strain, whatever it does to the output, for the reason
+  // that the note gives; empty where no output was asked for.
+  bool by_output = false;
+  std::string note;
 };
 
 }  // namespace isochor

@@ -472,7 +472,9 @@ enum {
   ISO_PARAMETER_STIFFNESS = 5,      /* a factor on the stiffness of `region` of `body`, at 1 */
   ISO_PARAMETER_CELL_STIFFNESS = 6, /* the same of each cell of `body`: as many numbers; not by tangents */
   ISO_PARAMETER_CONSTANT_OF = 7,    /* a number among the keys of `effect`, whose kind is `effect_kind` */
-  ISO_PARAMETER_SHAPE = 8           /* rest positions of `body` move by this times `motion` */
+  ISO_PARAMETER_SHAPE = 8,          /* rest positions of `body` move by this times `motion` */
+  ISO_PARAMETER_INITIAL_VELOCITY =
+      9 /* of trajectories: velocities at the start change by this times `motion` */
 };
 typedef struct iso_parameter {
   size_t size;
@@ -521,6 +523,25 @@ typedef struct iso_gradient_table {
 /* Gradients of outputs of an equilibrium of statics by parameters of the scene. The state stays as it is.
  * Pointers are good until the next call of iso_gradients(). */
 ISO_API iso_status iso_gradients(iso_world* world, const iso_gradient_query* query, iso_gradient_table* out);
+
+typedef struct iso_trajectory_query {
+  size_t size;
+  const double* steps; /* lengths of `step_count` increments from the state that the world is at [s] */
+  size_t step_count;
+  const iso_output* terms;    /* `term_count` positions, distances, points and gauges, ... */
+  const int32_t* term_steps;  /* ... each at the end of a step, from 1, or 0: at the start */
+  const int32_t* term_output; /* the output that each adds to, 0 to `output_count` - 1; null: each its own */
+  size_t term_count, output_count;
+  const iso_parameter* parameters;
+  size_t parameter_count;
+  int32_t mode;        /* ISO_GRADIENTS_... */
+  int32_t kept_states; /* of the way; others are made again. 0: all are kept */
+} iso_trajectory_query;
+/* Goes through the increments, as iso_step() does, and finds the gradients of what is seen on the way. The
+ * world is at their end then, on an error where it was. Pointers are good until the next call of
+ * iso_gradients() or this. */
+ISO_API iso_status iso_trajectory_gradients(iso_world* world, const iso_trajectory_query* query,
+                                            iso_gradient_table* out);
 
 typedef struct iso_world_size {
   size_t size;

@@ -30,8 +30,11 @@
 
 namespace isochor {
 
+struct ErrorOrigin;
 struct GradientQuery;
 struct Gradients;
+struct Output;
+struct TrajectoryQuery;
 
 // Stands for what the public headers say and for how the host's compiler lays it out.
 inline constexpr std::uint64_t kWorldAbi = [] {
@@ -178,6 +181,16 @@ class ISOCHOR_API World {
   // Gradients of numbers that the equilibrium shows by constants of materials and effects, stiffnesses of
   // cells, densities, gravity, amounts and rest positions (gradients.h). The state stays as it is.
   Result<Gradients> gradients(const GradientQuery& query);
+  // Goes through increments of these lengths, as step() does, and finds the gradients of what is seen on the
+  // way. The world is at the end of them then, with the bits of the same steps; on an error it is where it
+  // was. Every time scheme. Refused with what remembers, lags or looks back over an increment: contact with
+  // friction or on surfaces, impacts, damping, gas and liquid, viscoelasticity.
+  Result<Gradients> trajectory_gradients(const TrajectoryQuery& query);
+  // How much each cell has to do with the error that the mesh makes in each output: the error of the strain
+  // there, found by recovery, times how far the output feels it, in statics by its adjoint. One for the
+  // strain alone where no output is given. For choosing cells to refine (refine_cells()); how large the error
+  // is it does not say. One factorization, two solves an output. Errors: what gradients() says of outputs.
+  Result<std::vector<ErrorOrigin>> error_origins(std::span<const Output> outputs);
   // Largest |phi - target - C lambda| of all rows, relative to their measure.
   double constitutive_residual() const;
   WorldSize size() const;

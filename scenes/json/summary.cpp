@@ -133,6 +133,7 @@ void add_accuracy(Json& j, const Accuracy& accuracy) {
                {"compared", e.other},
                {"error", e.indicator}};
     if (e.relative) entry["relative"] = *e.relative;
+    if (!e.where.empty()) entry["where"] = e.where;
     a["indicators"].push_back(entry);
   }
 }

@@ -69,6 +69,21 @@ void describe(Visitor& io, SpherePlace& s) {
   io.number(Key("radius", "m", "its radius").above(0).must(), s.radius, d.radius);
 }
 
+void describe(Visitor& io, RefinedPlace& p) {
+  const RefinedPlace d;
+  io.about("refined_place",
+           "Cells that are refined beyond their neighbors: those that fit all of the criteria, in the placed "
+           "mesh. See [refined meshes](#refined-meshes).");
+  io.optional_box({"box", "m", "lower and upper corner; a node of the cell is between them"}, p.box);
+  io.maybe_object({"sphere", "", "a node of the cell is inside"}, p.sphere);
+  io.names({"surfaces", "", "a node of the cell is on one of them"}, p.surfaces);
+  io.names({"regions", "", "of the cell"}, p.regions);
+  io.optional_object({"cells", "", "by number, in the mesh as it is when their turn comes"}, p.cells,
+                     p.cells.given());
+  io.integer(Key("levels", "", "so many times, each time all that fit").least(1).most(12), p.levels,
+             d.levels);
+}
+
 void describe(Visitor& io, SeedPlace& s) {
   const SeedPlace d;
   io.about("seed_place",
@@ -120,6 +135,9 @@ void describe_at_rest(Visitor& io, SceneBody& b) {
           .least(0)
           .most(8),
       b.refine, d.refine);
+  io.list(
+      {"refine_where", "", "then cuts the cells of these places further, and neighbors as far as they must"},
+      b.refine_where);
   io.word({"element", "", "see [elements](elements.md)"}, b.element, d.element);
   io.list(Key("materials", "", "one, or one a region").must(), b.materials);
   io.optional_number(

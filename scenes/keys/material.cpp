@@ -86,7 +86,9 @@ void describe(Visitor& io, CompressionPenalty& p) {
 void describe(Visitor& io, CellField& f) {
   const CellField d;
   io.about("cell_field",
-           "One number a cell of the body's mesh: a factor on its stiffness, or its Poisson's ratio.");
+           "Numbers of cells of the body's mesh: one a cell (a factor on its stiffness, its Poisson's "
+           "ratio), or a list "
+           "of cells.");
   io.numbers({"values", "", "in place"}, f.values);
   io.text({"file", "", "text, numbers divided by blanks or lines; instead of `values`"}, f.file, d.file);
 }

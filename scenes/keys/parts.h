@@ -6,6 +6,7 @@
 namespace isochor::keys {
 
 void describe(Visitor& io, MaterialDef& m);
+void describe(Visitor& io, CellField& f);
 void describe(Visitor& io, BoxMeshDef& b);
 void describe(Visitor& io, LatticeMesh& l);
 void describe_at_rest(Visitor& io, SceneBody& b);  // all but how it moves at the start

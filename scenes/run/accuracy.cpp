@@ -7,6 +7,7 @@
 #include "isochor/mesh_io.h"
 #include "scenes/body_parts.h"
 #include "scenes/check_values.h"
+#include "scenes/run/error_places.h"
 
 namespace isochor {
 
@@ -125,6 +126,7 @@ Accuracy estimate_accuracy(const SceneDef& scene, const RunResult& result, const
   RunOptions quiet = options;
   quiet.folder.clear();
   quiet.on_step = {};
+  quiet.origins = false;
   const RunResult other = run_scene(compared.value().scene, quiet);
   a.seconds = other.wall_s;
   if (other.status != RunStatus::converged) {
@@ -142,6 +144,7 @@ Accuracy estimate_accuracy(const SceneDef& scene, const RunResult& result, const
     if (found->size > 0) e.relative = e.indicator / found->size;
     a.entries.push_back(std::move(e));
   }
+  add_places(result.origins, a.entries);
   return a;
 }
 

@@ -36,6 +36,7 @@ struct AccuracyEntry {
   double value = 0, other = 0;
   double indicator = 0;  // of the error of `value`, in its unit
   std::optional<double> relative;
+  std::string where = {};  // on the mesh it comes from, of runs that were asked for origins
 };
 
 struct Accuracy {

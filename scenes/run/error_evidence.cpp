@@ -11,7 +11,7 @@ namespace isochor {
 
 namespace {
 
-constexpr double kThreeMeshes = 1.25, kLargestRatio = 4;
+constexpr double kThreeMeshes = 1.25, kLargestRatio = 4, kLargestLocalRatio = 2.5;
 // Ratios of differences below that of the order 1/3 tell of no order.
 constexpr double kLeastRatio = 1.2599;
 // A number so much smaller than the largest of its unit is rounding: a displacement across a plane of
@@ -74,8 +74,16 @@ Evidence from_two_meshes(std::span<const Answer> coarse, std::span<const Answer>
       "the difference to the same element on the mesh before (two meshes, order 2, safety factor 3)");
 }
 
-Evidence from_three_meshes(std::span<const Answer> coarsest, std::span<const Answer> coarse,
-                           std::span<const Answer> fine) {
+Evidence from_two_local_meshes(std::span<const Answer> coarse, std::span<const Answer> fine) {
+  return collect(
+      fine, coarse, [](const Answer& a, const Answer& b) { return kLocalSafety * norm(a.value - b.value); },
+      "the difference to the same element on the mesh before (two meshes, safety factor 1.5)");
+}
+
+namespace {
+
+Evidence from_three(std::span<const Answer> coarsest, std::span<const Answer> coarse,
+                    std::span<const Answer> fine, double largest_ratio) {
   const auto error = [&](const Answer& mine, const Answer& before) -> double {
     const Answer* first = find(coarsest, mine.name);
     if (!first) return -1;
@@ -84,10 +92,22 @@ Evidence from_three_meshes(std::span<const Answer> coarsest, std::span<const Ans
     if (last == 0) return 0;
     const double ratio = previous / last;
     if (ratio < kLeastRatio || dot(d, d_before) <= 0) return std::max(last, previous);
-    return kThreeMeshes * last / (std::min(ratio, kLargestRatio) - 1);
+    return kThreeMeshes * last / (std::min(ratio, largest_ratio) - 1);
   };
   return collect(fine, coarse, error,
                  "the observed order of convergence on three meshes (Richardson, safety factor 1.25)");
+}
+
+}  // namespace
+
+Evidence from_three_meshes(std::span<const Answer> coarsest, std::span<const Answer> coarse,
+                           std::span<const Answer> fine) {
+  return from_three(coarsest, coarse, fine, kLargestRatio);
+}
+
+Evidence from_three_local_meshes(std::span<const Answer> coarsest, std::span<const Answer> coarse,
+                                 std::span<const Answer> fine) {
+  return from_three(coarsest, coarse, fine, kLargestLocalRatio);
 }
 
 Evidence from_two_elements(std::span<const Answer> worse, std::span<const Answer> better,

@@ -14,6 +14,10 @@ struct ErrorLadder {
   std::optional<Element> element;
   std::vector<std::vector<Answer>> answers;  // by level
   std::vector<RunCost> costs;
+  // Every mesh is the one before with some cells refined, in place of all; its first run is that of this
+  // ladder.
+  std::optional<std::size_t> local_of = {};
+  double growth = 8;  // so many times the cells on the next mesh
 
   int levels() const { return static_cast<int>(costs.size()); }
 };
@@ -29,7 +33,9 @@ class ErrorForecast {
  public:
   explicit ErrorForecast(CostModel model = {}) : model_(std::move(model)) {}
 
-  std::vector<ErrorLadder> ladders;  // from the cheapest element to the best
+  // From the cheapest element to the best, with all cells refined; then those with some, whose first level is
+  // there when the first of `local_of` is.
+  std::vector<ErrorLadder> ladders;
 
   // What is known of the error of the last run of a ladder: by its own meshes where it has two or three, by
   // the next worse element on the same mesh; whichever says more.
@@ -43,6 +49,9 @@ class ErrorForecast {
   std::optional<ErrorPlan> plan(std::size_t ladder, double error, int most_levels) const;
 
  private:
+  bool of_all(std::size_t ladder) const { return !ladders[ladder].local_of; }
+  double error_of_first(std::size_t ladder) const;
+
   CostModel model_;
 };
 

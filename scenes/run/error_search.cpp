@@ -11,6 +11,7 @@
 #include "engine/base/available_memory.h"
 #include "engine/base/text.h"
 #include "scenes/run/error_forecast.h"
+#include "scenes/run/error_places.h"
 #include "scenes/run/outputs.h"
 
 namespace isochor {
@@ -21,6 +22,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double kNever = std::numeric_limits<double>::infinity();
+// The share of the error of every answer that the cells hold which are refined.
+constexpr double kHeld = 0.75;
+// Refining some cells halves fewer errors at once.
+constexpr int kRoundsPerLevel = 3;
+// Cells that one that is refined makes, beside itself, and its neighbors, which must fit.
+constexpr double kMadeByOne = 10;
 
 std::string two_digits(double value) {
   char text[32];
@@ -45,9 +52,14 @@ class Search {
   double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   std::optional<double> time_left() const;
 
+  bool of_all(std::size_t ladder) const { return !forecast_.ladders[ladder].local_of; }
+  int most_levels(std::size_t ladder) const;
   bool affordable(std::size_t ladder);
   std::optional<std::size_t> choose();
 
+  Setting next_setting(std::size_t ladder) const;
+  bool wants_origins(std::size_t ladder) const;
+  void choose_cells(std::size_t ladder, const RunResult& result);
   // Runs it; false: the search is over.
   bool try_next(std::size_t ladder);
   Result<void> publish(const SceneDef& scene) const;
@@ -63,6 +75,7 @@ class Search {
   SettingChoices choices_;
   ErrorForecast forecast_;
   std::vector<std::string> closed_;  // by ladder: why it has no next run; empty: it has
+  std::vector<Setting> next_;        // by ladder, of those where some cells are refined
   Clock::time_point start_ = Clock::now();
   bool out_of_time_ = false;
 };
@@ -87,7 +100,13 @@ Result<void> Search::prepare() {
   if (!choices) return choices.failure();
   choices_ = std::move(choices).value();
   for (const auto& element : choices_.elements) forecast_.ladders.push_back({element, {}, {}});
+  for (std::size_t l = 0; choices_.can_local && l < choices_.elements.size(); ++l) {
+    if (choices_.elements[l] == Element::tet4) continue;
+    forecast_.ladders.push_back({choices_.elements[l], {}, {}});
+    forecast_.ladders.back().local_of = l;
+  }
   closed_.resize(forecast_.ladders.size());
+  next_.resize(forecast_.ladders.size());
   return {};
 }
 
@@ -98,11 +117,16 @@ std::optional<double> Search::time_left() const {
 
 // --- What is expected -------------------------------------------------------------------------------------
 
+int Search::most_levels(std::size_t l) const {
+  return of_all(l) ? std::min(options_.most_levels, choices_.most_levels)
+                   : kRoundsPerLevel * options_.most_levels;
+}
+
 // Closes the ladder where its next run asks for more than there is.
 bool Search::affordable(std::size_t l) {
   const int level = forecast_.ladders[l].levels();
   std::string& closed = closed_[l];
-  if (level > std::min(options_.most_levels, choices_.most_levels)) {
+  if (level > most_levels(l)) {
     closed = "the mesh has been refined " + std::to_string(level - 1) + " times, no more is tried";
     return false;
   }
@@ -126,14 +150,17 @@ bool Search::affordable(std::size_t l) {
 std::optional<std::size_t> Search::choose() {
   const auto& ladders = forecast_.ladders;
   // The cheap elements on the mesh as it is: what they differ by tells how far there is to go.
-  for (std::size_t l = 0; l + 1 < ladders.size(); ++l) {
+  const std::size_t elements = choices_.elements.size();
+  for (std::size_t l = 0; l + 1 < elements; ++l) {
     if (ladders[l].levels() == 0 && closed_[l].empty() && affordable(l)) return l;
   }
   std::optional<std::size_t> best;
   double least = kNever;
   for (std::size_t l = 0; l < ladders.size(); ++l) {
+    // The first run of the others is that of the same element.
+    if (!of_all(l) && ladders[l].levels() == 0) continue;
     if (!closed_[l].empty() || !affordable(l)) continue;
-    const auto plan = forecast_.plan(l, options_.error, options_.most_levels);
+    const auto plan = forecast_.plan(l, options_.error, most_levels(l));
     const double cost = plan ? plan->work : kNever;
     // Where none is expected to reach it, the better element comes nearer.
     if (!best || cost < least || (cost == kNever && least == kNever)) best = l;
@@ -142,7 +169,7 @@ std::optional<std::size_t> Search::choose() {
   // An element that has not been run on the mesh of the scene and costs less than that is looked at before:
   // how good it is was a guess.
   const auto next = best ? forecast_.cost(*best, ladders[*best].levels()) : std::nullopt;
-  for (std::size_t l = 0; next && l < ladders.size(); ++l) {
+  for (std::size_t l = 0; next && l < elements; ++l) {
     if (ladders[l].levels() > 0 || !closed_[l].empty() || !affordable(l)) continue;
     const auto cost = forecast_.cost(l, 0);
     if (cost && cost->work() < next->work()) return l;
@@ -156,17 +183,48 @@ std::string Search::trial_folder() const {
   return options_.run.folder.empty() ? "" : (fs::path(options_.run.folder) / ".trial").string();
 }
 
+Setting Search::next_setting(std::size_t l) const {
+  if (!of_all(l)) return next_[l];
+  Setting setting;
+  setting.element = forecast_.ladders[l].element;
+  setting.refine = forecast_.ladders[l].levels();
+  return setting;
+}
+
+// Of runs whose mesh may be refined where it counts.
+bool Search::wants_origins(std::size_t l) const {
+  return !of_all(l) || (forecast_.ladders[l].levels() == 0 &&
+                        std::any_of(forecast_.ladders.begin(), forecast_.ladders.end(),
+                                    [&](const ErrorLadder& other) { return other.local_of == l; }));
+}
+
+// What the next mesh of a ladder refines of the one that was run.
+void Search::choose_cells(std::size_t l, const RunResult& result) {
+  ErrorLadder& ladder = forecast_.ladders[l];
+  auto cells = cells_to_refine(result.origins, kHeld);
+  double marked = 0;
+  for (const auto& of_body : cells) marked += static_cast<double>(of_body.size());
+  if (marked == 0) {
+    closed_[l] = "no cell has an error to refine for";
+    return;
+  }
+  next_[l].element = ladder.element;
+  next_[l].rounds.push_back(std::move(cells));
+  ladder.growth = std::min(8.0, 1 + kMadeByOne * marked / std::max<double>(1, result.elements));
+}
+
 bool Search::try_next(std::size_t l) {
   ErrorLadder& ladder = forecast_.ladders[l];
   const int level = ladder.levels();
   Trial trial;
-  trial.setting = {ladder.element, level};
+  trial.setting = next_setting(l);
   if (const auto cost = forecast_.cost(l, level)) trial.predicted_seconds = cost->seconds();
   const SceneDef scene = with_setting(scene_, choices_, trial.setting);
   RunOptions options = options_.run;
   options.folder = trial_folder();
   options.log = {};
   options.on_step = {};
+  options.origins = wants_origins(l);
   if (const auto left = time_left()) options.budget = std::max(1e-3, *left);
   RunResult result = run_scene(scene, options);
   trial.status = result.status;
@@ -180,6 +238,14 @@ bool Search::try_next(std::size_t l) {
   if (result.status == RunStatus::converged) {
     ladder.answers.push_back(answers_of(result));
     ladder.costs.push_back(cost_of(result, ladder.element));
+    for (std::size_t k = 0; k < forecast_.ladders.size(); ++k) {
+      ErrorLadder& other = forecast_.ladders[k];
+      if (other.local_of == l && level == 0) {
+        other.answers = ladder.answers;
+        other.costs = ladder.costs;
+      }
+      if (options.origins && (k == l ? !of_all(l) : other.local_of == l)) choose_cells(k, result);
+    }
     const Evidence evidence = forecast_.evidence(l).value_or(Evidence{});
     if (!evidence.how.empty()) {
       out_.trials[number].indicator = evidence.largest;
@@ -222,6 +288,9 @@ Result<void> move_up(const fs::path& from, const fs::path& to) {
 Result<void> Search::publish(const SceneDef& scene) const {
   if (options_.run.folder.empty()) return {};
   if (auto opened = RunOutputs::open(options_.run.folder, scene); !opened) return opened.failure();
+  if (out_.best) {
+    if (auto r = write_rounds(out_.trials[*out_.best].setting, options_.run.folder); !r) return r;
+  }
   return move_up(trial_folder(), options_.run.folder);
 }
 
@@ -230,9 +299,10 @@ bool Search::adopt(std::size_t trial, const RunResult& result, const Evidence& e
   out_.best = trial;
   out_.result = result;
   out_.scene = with_setting(scene_, choices_, out_.trials[trial].setting);
-  out_.overrides = overrides_for(scene_, choices_, out_.trials[trial].setting);
+  out_.overrides = overrides_for(scene_, choices_, out_.trials[trial].setting, options_.run.folder);
   out_.accuracy = {};
   out_.accuracy.entries = evidence.entries;
+  add_places(result.origins, out_.accuracy.entries);
   out_.accuracy.how = evidence.how;
   if (evidence.how.empty()) out_.accuracy.reason = "no indicator: there has been nothing to compare with";
   const Result<void> moved = publish(out_.scene);
@@ -250,7 +320,8 @@ std::string Search::why_no_more() const {
   std::string text;
   for (std::size_t l = 0; l < closed_.size(); ++l) {
     if (!closed_[l].empty())
-      text += (text.empty() ? "" : "; ") + element_text(forecast_.ladders[l].element) + ": " + closed_[l];
+      text += (text.empty() ? "" : "; ") + element_text(forecast_.ladders[l].element) +
+              (of_all(l) ? "" : " refined where it counts") + ": " + closed_[l];
   }
   return text;
 }

@@ -55,8 +55,9 @@ inline const char* to_string(SearchEnd end) {
 
 struct ErrorSearchOptions {
   double error = 0.01;  // relative, of every metric and probe
-  int most_levels = 4;  // of refinement beyond the scene's mesh
-  RunOptions run;       // the budget is that of all runs together; outputs are those of the best run
+  int most_levels =
+      4;           // of refinement beyond the scene's mesh; three times as many where some cells are refined
+  RunOptions run;  // the budget is that of all runs together; outputs are those of the best run
   std::function<void(const Trial&)> on_trial;
 };
 
@@ -74,8 +75,9 @@ struct ErrorSearch {
 };
 
 // Runs settings until one is known to be good enough: first the cheap elements on the mesh of the scene, then
-// always what is expected to reach the error at the least predicted cost. Ctrl-C and the budget leave the
-// best so far, with its outputs.
+// always what is expected to reach the error at the least predicted cost: a better element, all cells cut
+// into eight, or those cells alone that hold three quarters of the error of every answer. Ctrl-C and the
+// budget leave the best so far, with its outputs.
 ErrorSearch search_error(const SceneDef& scene, const ErrorSearchOptions& options);
 
 // A percentage as "1%" or "1 %", or a fraction as "0.01".

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "engine/base/atomic_file.h"
+#include "scenes/run/error_places.h"
 #include "scenes/run/run_page.h"
 #include "scenes/scene_file.h"
 
@@ -272,6 +273,8 @@ Result<void> RunOutputs::write_frame(const RunView& view, std::size_t b, const B
                       {"stress", 6, fields.cell_stress},
                       {"max_stretch", 1, fields.cell_max_stretch},
                       {"region", 1, region}};
+  const std::vector<double> share = largest_shares(view.result.origins, b);
+  if (!share.empty()) grid.cell_fields.push_back({"error_share", 1, share});
   const StepRecord& record = view.result.records.back();
   const std::string series = series_name(view.scene, b);
   const std::string file = "frames/" + frame_file(series, record.step);

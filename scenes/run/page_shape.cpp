@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/mesh/cell_shape.h"
 #include "page_surface.h"
+#include "scenes/run/error_places.h"
 
 namespace isochor {
 
@@ -20,6 +22,28 @@ std::vector<double> at_nodes(const Mesh& mesh, const std::vector<double>& cells)
   }
   for (std::size_t n = 0; n < sum.size(); ++n) sum[n] /= std::max(count[n], 1.0);
   return sum;
+}
+
+// By the corners.
+std::vector<double> cell_volumes(const Mesh& mesh) {
+  std::vector<double> out;
+  const auto per = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
+  for (std::size_t c = 0; c < mesh.cells.size(); c += per) {
+    const auto tet = [&](const std::array<std::size_t, 4>& a) {
+      const auto x = [&](std::size_t i) {
+        return mesh.nodes[static_cast<std::size_t>(mesh.cells[c + a[i]])];
+      };
+      return dot(cross(x(1) - x(0), x(2) - x(0)), x(3) - x(0)) / 6;
+    };
+    double volume = 0;
+    if (mesh.cell_type == CellType::hex8) {
+      for (const auto& corners : kHexTets) volume += tet(corners);
+    } else {
+      volume = tet({0, 1, 2, 3});
+    }
+    out.push_back(volume);
+  }
+  return out;
 }
 
 // What the nodes of a cell say at a point in it.
@@ -40,7 +64,7 @@ bool has_contact(const SceneDef& scene) {
   return !scene.contacts.empty() || !scene.surface_contacts.empty();
 }
 
-std::vector<PageField> page_fields(const SceneDef& scene) {
+std::vector<PageField> page_fields(const SceneDef& scene, bool origins) {
   std::vector<PageField> fields(4);
   fields[0].name = "displacement";
   fields[0].label = "Displacement";
@@ -57,6 +81,7 @@ std::vector<PageField> page_fields(const SceneDef& scene) {
   fields[3].diverging = true;
   fields[3].center = 1;
   if (has_contact(scene)) fields.push_back({"contact_pressure", "Contact pressure", "Pa"});
+  if (origins) fields.push_back({"error_share", "Share in the error, times the mean", ""});
   return fields;
 }
 
@@ -130,7 +155,7 @@ PageShape::PageShape(const RunView& view) {
   for (const Vertices& v : vertices_)
     nodes.push_back(v.nodes.empty() ? std::vector<Index>(v.points.size(), 0) : v.nodes);
   to_cut_ = triangles_to_cut(view, scene_, nodes);
-  scene_.fields = page_fields(view.scene);
+  scene_.fields = page_fields(view.scene, view.result.wants_origins);
   scene_.probes = view.result.probes;
   scene_.up = up_axis(view.scene);
   overlays_.start(view, scene_, triangle_cell);
@@ -143,6 +168,7 @@ PageFrame PageShape::frame(const RunView& view, const std::vector<BodyFields>& f
     add_positions(view, frame);
   } else {
     add_fields(view, fields, frame);
+    if (view.result.wants_origins) add_origins(view, frame);
   }
   overlays_.append(view, frame);
   const auto& displacement = view.result.records.back().probes;
@@ -195,6 +221,29 @@ void PageShape::add_fields(const RunView& view, const std::vector<BodyFields>& f
       add(of(x), of(rest), of(pressure), of(von_mises), of(J));
       if (contact) frame.fields[4].push_back(interpolated(p, touched));
     }
+  }
+}
+
+// The largest share that a cell has in the error of any answer, per volume, against that of the whole scene;
+// zero before the end, where shares are not known yet.
+void PageShape::add_origins(const RunView& view, PageFrame& frame) const {
+  std::vector<double>& out = frame.fields.emplace_back();
+  const World& world = view.built.world;
+  std::vector<std::vector<double>> volume;
+  double whole = 0;
+  for (const BodyId id : view.built.bodies) {
+    volume.push_back(cell_volumes(world.mesh(id)));
+    for (const double v : volume.back()) whole += v;
+  }
+  for (std::size_t b = 0; b < vertices_.size(); ++b) {
+    const Mesh& mesh = world.mesh(view.built.bodies[b]);
+    std::vector<double> density = largest_shares(view.result.origins, b);
+    density.resize(volume[b].size());
+    for (std::size_t c = 0; c < density.size(); ++c) density[c] *= whole / volume[b][c];
+    const auto nodes = at_nodes(mesh, density);
+    for (const Index node : vertices_[b].nodes) out.push_back(nodes[static_cast<std::size_t>(node)]);
+    for (const EmbeddedPoint& p : vertices_[b].points)
+      out.push_back(interpolated(p, [&](std::size_t n) { return nodes[n]; }));
   }
 }
 

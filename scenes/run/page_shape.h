@@ -12,7 +12,7 @@ namespace isochor {
 
 // What bodies of a scene are colored by; the contact pressure where anything may touch.
 bool has_contact(const SceneDef& scene);
-std::vector<PageField> page_fields(const SceneDef& scene);
+std::vector<PageField> page_fields(const SceneDef& scene, bool origins = false);
 // Gravity tells which way is up; without it the y axis of these scenes is.
 char up_axis(const SceneDef& scene);
 
@@ -35,6 +35,7 @@ class PageShape {
   };
   void add_positions(const RunView& view, PageFrame& frame) const;
   void add_fields(const RunView& view, const std::vector<BodyFields>& fields, PageFrame& frame) const;
+  void add_origins(const RunView& view, PageFrame& frame) const;
 
   PageScene scene_;
   std::vector<Vertices> vertices_;  // by body

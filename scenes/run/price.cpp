@@ -35,7 +35,8 @@ bool Pricing::try_next(std::size_t l) {
   const auto cost = forecast_.cost(l, ladder.levels());
   if (cost && cost->seconds() > options_.most_seconds) return true;
   Trial trial;
-  trial.setting = {ladder.element, ladder.levels()};
+  trial.setting.element = ladder.element;
+  trial.setting.refine = ladder.levels();
   trial.predicted_seconds = cost ? cost->seconds() : 0;
   RunOptions run = options_.run;
   run.folder.clear();
@@ -82,7 +83,9 @@ void Pricing::make_rows() {
       const bool cheaper = plan->work < least || (plan->work == least && plan->cost.work() < row.cost.work());
       if (row.setting && !cheaper) continue;
       least = plan->work;
-      row.setting = {forecast_.ladders[l].element, plan->level};
+      row.setting = Setting{};
+      row.setting->element = forecast_.ladders[l].element;
+      row.setting->refine = plan->level;
       row.cost = plan->cost;
       row.search_s = plan->seconds;
     }

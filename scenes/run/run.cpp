@@ -10,6 +10,7 @@
 
 #include "engine/base/text.h"
 #include "scenes/law_limits.h"
+#include "scenes/run/error_places.h"
 #include "scenes/run/outputs.h"
 #include "scenes/run/step_recorder.h"
 #include "scenes/scene_file.h"
@@ -47,7 +48,9 @@ class Run {
         built_(built),
         result_(result),
         start_(start),
-        recorder_(scene, built) {}
+        recorder_(scene, built) {
+    result_.wants_origins = options_.origins;
+  }
 
   void describe();
   // Takes over where an earlier run was.
@@ -261,6 +264,7 @@ void Run::march(RunOutputs* outputs) {
       result_.reason.clear();
     }
     if (over || last) warn_of_ends();
+    if (options_.origins && !over && last) result_.origins = origins_of_answers(scene_, built_, result_);
     if (!write(outputs, over || last)) return;
     if (keeping && over) keep(outputs);
     if (over || last) return;

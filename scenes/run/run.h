@@ -67,6 +67,15 @@ struct MetricValue {
   std::optional<bool> within;   // of the tolerance
 };
 
+// Where the error of an answer comes from, by body and cell of its mesh: World::error_origins().
+struct AnswerOrigin {
+  std::string name;  // of a metric, or "probe NAME"
+  std::vector<std::vector<double>> cells;
+  bool by_output = false;
+  std::string note;
+  std::string where;  // the same in words
+};
+
 struct RunOptions {
   std::string folder;            // where outputs go; empty: none are written
   int threads = 0;               // 0: all the machine has
@@ -74,6 +83,7 @@ struct RunOptions {
   // Goes on from the last checkpoint in `folder` with the bits of a run that was never stopped; from the
   // beginning where there is none. Refused where the scene is another.
   bool resume = false;
+  bool origins = false;        // RunResult::origins are wanted; the run takes a factorization more
   std::function<bool()> stop;  // asked at every iteration; true interrupts
   // Processes that run it together (Host::ranks), each with these options. Rank 0 writes the outputs; a stop
   // or the end of the budget on any of them ends all, between steps.
@@ -100,6 +110,8 @@ struct RunResult {
   std::vector<std::string> probes, cavities, supports;  // names, in the order of the records' lists
   std::vector<MetricValue> metrics;
   std::vector<std::string> warnings;
+  bool wants_origins = false;
+  std::vector<AnswerOrigin> origins;  // of a run that converged, where they were asked for
 };
 
 RunResult run_scene(const SceneDef& scene, const RunOptions& options = {});

@@ -47,7 +47,7 @@ CostModel::CostModel() {
   of(Element::tet10) = {15, 1.4, 25, 5, 9, 5, 6};
 }
 
-RunCost CostModel::refined(const RunCost& cost, std::optional<Element> element, int levels) const {
+RunCost CostModel::refined(const RunCost& cost, std::optional<Element> element, double levels) const {
   const OfElement& e = of(element);
   RunCost c = cost;
   for (double* counted : {&c.factor_s, &c.factor_work})
@@ -56,6 +56,10 @@ RunCost CostModel::refined(const RunCost& cost, std::optional<Element> element, 
   for (double* counted : {&c.other_s, &c.other_work, &c.other_bytes, &c.unknowns, &c.cells})
     *counted *= std::pow(kCells, levels);
   return c;
+}
+
+RunCost CostModel::grown(const RunCost& cost, std::optional<Element> element, double cells) const {
+  return refined(cost, element, std::log(cells) / std::log(kCells));
 }
 
 RunCost CostModel::with_element(const RunCost& cost, Element from, Element to) const {

@@ -38,8 +38,10 @@ class CostModel {
   OfElement& of(std::optional<Element> element) { return elements_[index(element)]; }
   const OfElement& of(std::optional<Element> element) const { return elements_[index(element)]; }
 
-  // With every cell cut into eight, `levels` times.
-  RunCost refined(const RunCost& cost, std::optional<Element> element, int levels) const;
+  // With every cell cut into eight, `levels` times; a part of a level for meshes that grow by less.
+  RunCost refined(const RunCost& cost, std::optional<Element> element, double levels) const;
+  // With so many times the cells.
+  RunCost grown(const RunCost& cost, std::optional<Element> element, double cells) const;
   // From one element to another on the same mesh of tets.
   RunCost with_element(const RunCost& cost, Element from, Element to) const;
 

@@ -434,11 +434,11 @@ CellAxes axes_of(std::span<const Index> corners, std::span<const Vec3> x) {
 
 // Of each cell the directions of the fibers in it at rest.
 std::vector<std::vector<Vec3>> fibers_in_cells(const SceneBody& body, const std::string& folder,
-                                               const Mesh& mesh) {
+                                               const Mesh& mesh, std::span<const Index> parent) {
   std::vector<std::vector<Vec3>> out(static_cast<std::size_t>(mesh.cell_count()));
   for (const MaterialDef& m : body.materials) {
     if (m.fibers.empty()) continue;
-    const auto refined = refined_numbers(m, folder, body.refine);
+    const auto refined = refined_numbers(m, folder, parent);
     if (!refined) continue;
     const auto families = fibers_of(refined.value(), &mesh);
     if (!families) continue;  // a world with them would not have been built
@@ -472,7 +472,8 @@ void RunOverlays::add_fibers(const RunView& view, const PageScene& scene,
   std::size_t first = 0;
   for (std::size_t b = 0; b < triangle_cell.size(); ++b) {
     const Mesh& mesh = view.built.world.mesh(view.built.bodies[b]);
-    directions.push_back(fibers_in_cells(view.scene.bodies[b], view.scene.folder, mesh));
+    directions.push_back(
+        fibers_in_cells(view.scene.bodies[b], view.scene.folder, mesh, view.built.parents[b]));
     const auto& here = directions.back();
     for (std::size_t t = 0; t < triangle_cell[b].size(); ++t) {
       const Index cell = triangle_cell[b][t];

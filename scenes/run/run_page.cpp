@@ -197,11 +197,12 @@ PageFrame RunPage::append(const RunView& view, const std::vector<BodyFields>& fi
   PageFrame frame = shape_.frame(view, fields);
   if (!shape_.to_cut().empty())
     section_ = section_through(frame.positions, shape_.to_cut(), up_axis(view.scene));
-  append(frame);
+  if (auto r = recorder_.append(frame); !r) failure_ = r.error();
   return frame;
 }
 
-void RunPage::append(const PageFrame& frame) {
+void RunPage::append(PageFrame frame) {
+  frame.fields.resize(shape_.scene().fields.size(), std::vector<double>(frame.positions.size()));
   if (auto r = recorder_.append(frame); !r) failure_ = r.error();
 }
 

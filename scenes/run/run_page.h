@@ -17,8 +17,8 @@ class RunPage {
   static std::unique_ptr<RunPage> start(const RunView& view);
   // The frame, for whoever keeps it.
   PageFrame append(const RunView& view, const std::vector<BodyFields>& fields);
-  // One that was kept.
-  void append(const PageFrame& frame);
+  // One that was kept, by a run that may have been asked for other fields.
+  void append(PageFrame frame);
   Result<void> write(const RunView& view, const std::string& path);
   // Why frames cannot be shown; empty: they can.
   const std::string& failure() const { return failure_; }

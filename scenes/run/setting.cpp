@@ -1,9 +1,11 @@
 #include "scenes/run/setting.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "scenes/body_parts.h"
 #include "scenes/check_values.h"
+#include "scenes/run/outputs.h"
 
 namespace isochor {
 
@@ -40,11 +42,19 @@ std::string element_text(const std::optional<Element>& element) {
   }
 }
 
+namespace {
+
+std::string times(std::size_t n) {
+  return n == 1 ? "once" : n == 2 ? "twice" : std::to_string(n) + " times";
+}
+
+}  // namespace
+
 std::string describe(const Setting& s) {
-  const std::string mesh = s.refine == 0   ? "mesh of the scene"
-                           : s.refine == 1 ? "mesh refined once"
-                           : s.refine == 2 ? "mesh refined twice"
-                                           : "mesh refined " + std::to_string(s.refine) + " times";
+  std::string mesh = "mesh of the scene";
+  if (s.refine > 0) mesh = "mesh refined " + times(static_cast<std::size_t>(s.refine));
+  if (!s.rounds.empty())
+    mesh = (s.refine > 0 ? mesh + ", then " : "mesh refined ") + times(s.rounds.size()) + " where it counts";
   return element_text(s.element) + ", " + mesh;
 }
 
@@ -67,6 +77,11 @@ Result<SettingChoices> setting_choices(const SceneDef& scene) {
     out.cells.push_back(mesh.cell_count());
     out.most_levels = std::min(out.most_levels, kMostRefined - body.refine);
     any = any || out.linear_tets.back();
+    out.can_local = out.can_local && mesh.cell_type != CellType::hex8;
+    // Lists of cells are those of a mesh that is no finer.
+    for (const RefinedPlace& p : body.refine_where) {
+      if (p.cells.given()) out.most_levels = 0;
+    }
     // Edges of Tet10 may be curved.
     const FlatFaces faces = mesh.cell_type == CellType::tet10 ? FlatFaces{} : flat_faces(mesh);
     if (faces.deficit > out.faces.deficit) {
@@ -86,11 +101,40 @@ SceneDef with_setting(const SceneDef& scene, const SettingChoices& choices, cons
   for (std::size_t b = 0; b < out.bodies.size(); ++b) {
     if (setting.element && choices.linear_tets[b]) out.bodies[b].element = *setting.element;
     out.bodies[b].refine += setting.refine;
+    for (const auto& round : setting.rounds) {
+      if (b >= round.size() || round[b].empty()) continue;
+      RefinedPlace place;
+      place.cells.values.assign(round[b].begin(), round[b].end());
+      out.bodies[b].refine_where.push_back(std::move(place));
+    }
   }
   return out;
 }
 
-std::string overrides_for(const SceneDef& scene, const SettingChoices& choices, const Setting& setting) {
+namespace {
+
+std::string file_of_round(const std::string& folder, std::size_t body, std::size_t round) {
+  return (std::filesystem::path(folder) /
+          ("refined_" + std::to_string(body) + "_" + std::to_string(round) + ".txt"))
+      .string();
+}
+
+}  // namespace
+
+Result<void> write_rounds(const Setting& setting, const std::string& folder) {
+  for (std::size_t k = 0; k < setting.rounds.size(); ++k) {
+    for (std::size_t b = 0; b < setting.rounds[k].size(); ++b) {
+      if (setting.rounds[k][b].empty()) continue;
+      std::string text;
+      for (const Index c : setting.rounds[k][b]) text += std::to_string(c) + "\n";
+      if (auto r = write_text(file_of_round(folder, b, k), text); !r) return r;
+    }
+  }
+  return {};
+}
+
+std::string overrides_for(const SceneDef& scene, const SettingChoices& choices, const Setting& setting,
+                          const std::string& folder) {
   std::string out;
   const SceneDef wanted = with_setting(scene, choices, setting);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
@@ -98,6 +142,15 @@ std::string overrides_for(const SceneDef& scene, const SettingChoices& choices, 
     const auto set = [&] { return std::string(out.empty() ? "" : " ") + "--set " + place("bodies", b); };
     if (is.element != be.element) out += set() + ".element=" + key_word(be.element);
     if (is.refine != be.refine) out += set() + ".refine=" + std::to_string(be.refine);
+    std::string places;
+    for (std::size_t k = 0; !folder.empty() && k < setting.rounds.size(); ++k) {
+      if (b >= setting.rounds[k].size() || setting.rounds[k][b].empty()) continue;
+      const std::string file =
+          std::filesystem::absolute(file_of_round(folder, b, k)).lexically_normal().string();
+      places += (places.empty() ? "" : ",") + ("{\"cells\":{\"file\":\"" + file + "\"}}");
+    }
+    if (!places.empty())
+      out += (out.empty() ? "" : " ") + ("--set '" + place("bodies", b) + ".refine_where=[" + places + "]'");
   }
   return out;
 }

@@ -14,7 +14,8 @@ static void must(int holds, const char* what) {
 }
 
 enum { YOUNG, DENSITY, GRAVITY, TRACTION, SPRING, PUSH, STRETCH, KNOBS };
-enum { OUTPUTS = 6, PARAMETERS = 9, NODES = 36 };
+/* Of an equilibrium; a way through time has a parameter more. */
+enum { OUTPUTS = 6, PARAMETERS = 9, ALL_PARAMETERS = 10, NODES = 36 };
 
 typedef struct scene {
   iso_world* world;
@@ -47,7 +48,7 @@ static void corner(const double* knob, double* x) {
 }
 
 /* A bar that is held, heavy, pulled at its end, pushed at a corner, and held by a spring. */
-static void make(scene* s, const double* knob) {
+static void make_in(scene* s, const double* knob, int32_t scheme) {
   const double lower[3] = {0, 0, 0}, upper[3] = {2, 1, 1};
   const int32_t divisions[3] = {3, 2, 2};
   const char* wall = "x0";
@@ -61,7 +62,7 @@ static void make(scene* s, const double* knob) {
   memcpy(s->knob, knob, sizeof s->knob);
   memset(&options, 0, sizeof options);
   options.size = sizeof options;
-  options.scheme = ISO_STATICS;
+  options.scheme = scheme;
   options.threads = 1;
   options.gravity[2] = knob[GRAVITY];
   options.keys = "{\"force_tolerance\": 1e-13, \"row_tolerance\": 1e-13}";
@@ -91,6 +92,11 @@ static void make(scene* s, const double* knob) {
   for (c = 0; c < 3; ++c) force[c] = knob[PUSH] * push[c];
   corner(knob, pushed);
   ok(s, iso_add_force_at(s->world, s->body, pushed, force));
+}
+
+/* In balance. */
+static void make(scene* s, const double* knob) {
+  make_in(s, knob, ISO_STATICS);
   ok(s, iso_advance(s->world, 1, NULL));
 }
 
@@ -133,8 +139,8 @@ static int calls = 0;
 
 static void make_parameters(scene* s, iso_parameter* p) {
   size_t k;
-  memset(p, 0, PARAMETERS * sizeof *p);
-  for (k = 0; k < PARAMETERS; ++k) {
+  memset(p, 0, ALL_PARAMETERS * sizeof *p);
+  for (k = 0; k < ALL_PARAMETERS; ++k) {
     p[k].size = sizeof *p;
     p[k].kind = (int32_t)k;
     p[k].body = s->body;
@@ -152,6 +158,8 @@ static void make_parameters(scene* s, iso_parameter* p) {
   p[ISO_PARAMETER_CONSTANT_OF].value = s->knob[SPRING];
   p[ISO_PARAMETER_SHAPE].motion = s->motion;
   p[ISO_PARAMETER_SHAPE].count = NODES;
+  p[ISO_PARAMETER_INITIAL_VELOCITY].motion = s->motion;
+  p[ISO_PARAMETER_INITIAL_VELOCITY].count = NODES;
 }
 
 static iso_gradient_query query_of(const iso_output* o, size_t outputs, const iso_parameter* p,
@@ -204,7 +212,7 @@ static void every_output_by_every_parameter(void) {
                                           YOUNG,    -1,   SPRING,  STRETCH};
   scene s;
   iso_output o[OUTPUTS];
-  iso_parameter p[PARAMETERS], numbers[PARAMETERS];
+  iso_parameter p[ALL_PARAMETERS], numbers[PARAMETERS];
   iso_gradient_query q;
   iso_gradient_table t = {0};
   double found[OUTPUTS][PARAMETERS], wanted[KNOBS][OUTPUTS], values[OUTPUTS];
@@ -308,7 +316,7 @@ static void refused(const scene* s, const iso_gradient_query* q, const char* wor
 static void outputs_that_are_refused(void) {
   scene s, other;
   iso_output o[OUTPUTS];
-  iso_parameter p[PARAMETERS];
+  iso_parameter p[ALL_PARAMETERS];
   iso_gradient_query q;
   make(&s, knobs);
   make(&other, knobs);
@@ -339,7 +347,7 @@ static void outputs_that_are_refused(void) {
 static void parameters_that_are_refused(void) {
   scene s;
   iso_output o[OUTPUTS];
-  iso_parameter p[PARAMETERS];
+  iso_parameter p[ALL_PARAMETERS];
   iso_gradient_query q;
   make(&s, knobs);
   ASK(p[0].effect = s.rows, "parameters[0]: effect \"volume\" has no amount");
@@ -395,7 +403,122 @@ static void queries_that_are_refused(void) {
   must(iso_world_free(s.world) == ISO_OK, "a world is freed");
 }
 
+enum { TERMS = 3, SUMS = 2, STEPS = 3, SEEN = 3 };
+
+/* The tip at the end, and the distances of all nodes from targets at two times; by Young's modulus, the traction
+ * and the velocity at the start, which is `speed` times the motion. */
+static void go_the_way(const double* knob, double speed, int32_t mode, int32_t kept, double* values,
+                       double* jacobian) {
+  static const double steps[STEPS] = {0.02, 0.03, 0.02};
+  static const int32_t term_steps[TERMS] = {3, 1, 3}, term_output[TERMS] = {0, 1, 1};
+  scene s;
+  iso_output all[OUTPUTS], o[TERMS];
+  iso_parameter p[ALL_PARAMETERS], asked[SEEN];
+  iso_trajectory_query q;
+  iso_gradient_table t = {0};
+  double velocity[3 * NODES], end = 0;
+  size_t k;
+  make_in(&s, knob, ISO_IMPLICIT_EULER);
+  for (k = 0; k < 3 * NODES; ++k) velocity[k] = speed * s.motion[k];
+  ok(&s, iso_set_velocities(s.world, s.body, velocity, NODES, 0));
+  make_outputs(&s, all);
+  make_parameters(&s, p);
+  o[0] = all[ISO_OUTPUT_MATERIAL_POINT];
+  o[1] = o[2] = all[ISO_OUTPUT_DISTANCE];
+  asked[0] = p[ISO_PARAMETER_MATERIAL];
+  asked[1] = p[ISO_PARAMETER_AMOUNT_OF];
+  asked[2] = p[ISO_PARAMETER_INITIAL_VELOCITY];
+  memset(&q, 0, sizeof q);
+  q.size = sizeof q;
+  q.steps = steps;
+  q.step_count = STEPS;
+  q.terms = o;
+  q.term_steps = term_steps;
+  q.term_output = term_output;
+  q.term_count = TERMS;
+  q.output_count = SUMS;
+  q.parameters = asked;
+  q.parameter_count = jacobian ? SEEN : 0;
+  q.mode = mode;
+  q.kept_states = kept;
+  t.size = sizeof t;
+  ok(&s, iso_trajectory_gradients(s.world, &q, &t));
+  must(t.output_count == SUMS && t.column_count == q.parameter_count, "an output a sum, a column a number");
+  memcpy(values, t.values, SUMS * sizeof *values);
+  if (jacobian) memcpy(jacobian, t.jacobian, SUMS * SEEN * sizeof *jacobian);
+  ok(&s, iso_time(s.world, &end));
+  must(fabs(end - 0.07) < 1e-12, "the world is at the end of the way");
+  must(iso_world_free(s.world) == ISO_OK, "a world is freed");
+}
+
+static void a_way_through_time(void) {
+  static const double weight[4] = {1. / 12, -8. / 12, 8. / 12, -1. / 12};
+  static const int at[4] = {-2, -1, 1, 2};
+  const double sizes[SEEN] = {knobs[YOUNG], knobs[TRACTION], 0.5};
+  double values[SUMS], adjoint[SUMS * SEEN], tangent[SUMS * SEEN];
+  int i, j, k;
+  go_the_way(knobs, 0.5, ISO_GRADIENTS_ADJOINT, 0, values, adjoint);
+  go_the_way(knobs, 0.5, ISO_GRADIENTS_TANGENT, 2, values, tangent);
+  for (k = 0; k < SEEN; ++k) {
+    const double h = 2e-3 * sizes[k];
+    double wanted[SUMS] = {0};
+    for (i = 0; i < 4; ++i) {
+      double there[KNOBS], seen[SUMS];
+      memcpy(there, knobs, sizeof there);
+      if (k < 2) there[k == 0 ? YOUNG : TRACTION] += at[i] * h;
+      go_the_way(there, 0.5 + (k == 2 ? at[i] * h : 0), ISO_GRADIENTS_AUTOMATIC, 0, seen, NULL);
+      for (j = 0; j < SUMS; ++j) wanted[j] += weight[i] / h * seen[j];
+    }
+    for (j = 0; j < SUMS; ++j) {
+      const double scale = fabs(wanted[j]) + 1e-3 * fabs(values[j]) / sizes[k];
+      must(fabs(adjoint[SEEN * j + k] - wanted[j]) <= 1e-6 * scale, "the adjoint is what differences say");
+      must(fabs(adjoint[SEEN * j + k] - tangent[SEEN * j + k]) <= 1e-9 * scale, "tangents say the same");
+    }
+  }
+}
+
+static void ways_that_are_refused(void) {
+  const double steps[2] = {0.1, -1};
+  const int32_t first = 1, far = 9, none = 4;
+  scene s;
+  iso_output o[OUTPUTS];
+  iso_trajectory_query q;
+  iso_gradient_table t = {0};
+  make_in(&s, knobs, ISO_IMPLICIT_EULER);
+  make_outputs(&s, o);
+  memset(&q, 0, sizeof q);
+  q.size = sizeof q;
+  t.size = sizeof t;
+  q.step_count = 1;
+  must(iso_trajectory_gradients(s.world, &q, &t) == ISO_REFUSED, "steps must be there");
+  q.steps = steps;
+  q.step_count = 2;
+  must(iso_trajectory_gradients(s.world, &q, &t) == ISO_REFUSED &&
+           strstr(iso_last_error(s.world), "steps[1] = -1") != NULL,
+       "steps are positive");
+  q.step_count = 1;
+  q.terms = o;
+  q.term_count = 1;
+  must(iso_trajectory_gradients(s.world, &q, &t) == ISO_REFUSED, "terms have steps");
+  q.term_steps = &far;
+  must(iso_trajectory_gradients(s.world, &q, &t) == ISO_REFUSED &&
+           strstr(iso_last_error(s.world), "step = 9") != NULL,
+       "steps there are");
+  q.term_steps = &first;
+  q.term_output = &none;
+  q.output_count = 1;
+  must(iso_trajectory_gradients(s.world, &q, &t) == ISO_REFUSED &&
+           strstr(iso_last_error(s.world), "term_output[0] = 4") != NULL,
+       "outputs there are");
+  q.term_output = NULL;
+  q.mode = 7;
+  must(iso_trajectory_gradients(s.world, &q, &t) == ISO_REFUSED, "modes there are");
+  must(iso_world_free(s.world) == ISO_OK, "a world is freed");
+}
+
 int main(void) {
+  a_way_through_time();
+  ways_that_are_refused();
   every_output_by_every_parameter();
   outputs_that_are_refused();
   parameters_that_are_refused();

@@ -48,7 +48,7 @@ static iso_status gradients(iso_world* world, iso_body body, iso_effect effect, 
   output.quantity = texts[dice(6)];
   memcpy(output.direction, v, sizeof output.direction);
   memcpy(output.force, v, sizeof output.force);
-  parameter.kind = (int32_t)dice(11) - 1;
+  parameter.kind = (int32_t)dice(12) - 1;
   memcpy(parameter.vector, v, sizeof parameter.vector);
   parameter.motion = v;
   parameter.count = dice(2);
@@ -62,6 +62,25 @@ static iso_status gradients(iso_world* world, iso_body body, iso_effect effect, 
   query.parameter_count = dice(2);
   query.mode = (int32_t)dice(5) - 1;
   query.unstable = (int32_t)dice(2);
+  if (dice(3) == 0) {
+    const double steps[2] = {dice(4) == 0 ? number() : 0.01, 0.01};
+    const int32_t at = (int32_t)dice(4) - 1, to = (int32_t)dice(3) - 1;
+    iso_trajectory_query way;
+    memset(&way, 0, sizeof way);
+    way.size = dice(6) == 0 ? dice(64) : sizeof way;
+    way.steps = dice(6) == 0 ? NULL : steps;
+    way.step_count = dice(3);
+    way.terms = query.outputs;
+    way.term_steps = dice(6) == 0 ? NULL : &at;
+    way.term_output = dice(2) == 0 ? NULL : &to;
+    way.term_count = query.output_count;
+    way.output_count = dice(3);
+    way.parameters = query.parameters;
+    way.parameter_count = query.parameter_count;
+    way.mode = query.mode;
+    way.kept_states = (int32_t)dice(4) - 1;
+    return iso_trajectory_gradients(world, &way, &told);
+  }
   return iso_gradients(world, &query, &told);
 }
 

@@ -186,7 +186,10 @@ def test_python_and_c_have_every_kind_that_cpp_has(struct, ours, hollow):
     include = SOURCE / "include" / "isochor"
     names, kinds = enumerated(struct, (include / "gradients.h").read_text(encoding="utf-8"))
     tested = outputs(hollow) if struct == "Output" else parameters(hollow)
-    assert names == {name for name, made in vars(ours).items() if isinstance(made, staticmethod)} == set(tested)
+    # Velocities are those of a way through time.
+    of_ways = set() if struct == "Output" else {"initial_velocity"}
+    assert names == {name for name, made in vars(ours).items() if isinstance(made, staticmethod)}
+    assert names == set(tested) | of_ways
     in_c = re.findall(rf"\bISO_{struct.upper()}_(\w+) = ", (include / "isochor.h").read_text(encoding="utf-8"))
     assert {name.lower() for name in in_c} == names - {"node"}  # one of positions
     # Kinds are made by functions, points and nodes by those of a kind that has others.
@@ -424,3 +427,75 @@ def test_handles_of_a_clone_and_of_its_original_are_good_in_both(hollow):
     clone = hollow.world.clone()
     asked = [Output.node(hollow.body, TIP, (0, 0, 1))], [hollow.air, Parameter.material(hollow.body, "young")]
     assert np.array_equal(clone.gradients(*asked).jacobian, hollow.world.gradients(*asked).jacobian)
+
+
+STEPS = np.array((0.02, 0.03, 0.02))
+
+
+def swing(**knobs):
+    k = {"young": 2e5, "speed": 0.3, "pull": 1.0, **knobs}
+    world = iso.World(
+        scheme="generalized_alpha", gravity=(0, 0, -2.0), threads=1, force_tolerance=1e-13, row_tolerance=1e-13
+    )
+    body = world.add_body(iso.box_mesh(divisions=(2, 1, 1)), iso.neo_hookean(young=k["young"], poisson=0.45))
+    world.add(iso.volume(body))
+    world.add(iso.dirichlet(body, surfaces="x0"))
+    load = world.add(iso.traction(body, "x1", traction=(0, 100, 50), amount=k["pull"]))
+    x = body.rest_positions
+    body.velocities = k["speed"] * (x * (0, 1, 1))
+    return world, body, load
+
+
+def seen(body):
+    tip = body.rest_positions.shape[0] - 1
+    near = Output.distance(body, [tip], [(1.1, 1.2, 0.9)])
+    return [(3, Output.node(body, tip, (0, 1, 1))), [(1, near), (3, near)]]
+
+
+def ask_swing(mode, kept=0, knobs=None, parameters=True):
+    world, body, load = swing(**(knobs or {}))
+    x = body.rest_positions
+    asked = [
+        Parameter.material(body, "young"),
+        Parameter.initial_velocity(body, x * (0, 1, 1)),
+        load,
+        Parameter.initial_velocity(body, np.stack((x * (0, 1, 1), 2 * x * (0, 1, 1)))),
+    ]
+    told = world.trajectory_gradients(STEPS, seen(body), asked if parameters else [], mode=mode, kept_states=kept)
+    assert world.time == pytest.approx(STEPS.sum())
+    return told
+
+
+def test_ways_through_time_are_what_differences_say():
+    adjoint, tangent = ask_swing("adjoint"), ask_swing("tangent", kept=1)
+    assert adjoint.adjoint and not tangent.adjoint and adjoint.regular
+    assert [one.shape for one in adjoint.by] == [(2,), (2,), (2,), (2, 2)]
+    assert np.allclose(adjoint.jacobian, tangent.jacobian, rtol=1e-9, atol=1e-12)
+    assert np.allclose(adjoint.by[3][:, 1], 2 * adjoint.by[1], rtol=1e-12)
+    for column, (knob, at) in enumerate((("young", 2e5), ("speed", 0.3), ("pull", 1.0))):
+        h = 2e-3 * at
+        sides = [ask_swing("automatic", knobs={knob: at + s * h}, parameters=False).values for s in (-2, -1, 1, 2)]
+        wanted = (sides[0] - 8 * sides[1] + 8 * sides[2] - sides[3]) / (12 * h)
+        assert adjoint.by[column] == pytest.approx(wanted, rel=1e-5)
+
+
+def test_ways_that_are_refused():
+    world, body, load = swing()
+    before = world.state_hash
+    out = seen(body)
+    for steps, outputs, more, words in (
+        ([], out, {}, "steps is empty"),
+        ([0.01, -1], out, {}, "steps[1] = -1"),
+        (0.01, out, {}, "steps is a value of type float"),
+        ([0.01], [(5, out[0][1])], {}, "outputs[0]: step = 5"),
+        ([0.01], [(1.5, out[0][1])], {}, "outputs[0]: step = 1.5"),
+        ([0.01], [out[0][1]], {}, "outputs[0]: the output is a value of type Output"),
+        ([0.01], [(1, "tip")], {}, "outputs[0]: a value of type str"),
+        ([0.01], [(1, Output.elastic_energy())], {}, "energies"),
+        ([0.01], [(1, out[0][1])], {"mode": "best"}, 'mode is "best"'),
+        ([0.01], [(1, out[0][1])], {"kept_states": -1}, "kept_states = -1"),
+    ):
+        with pytest.raises(iso.Error) as caught:
+            world.trajectory_gradients(steps, outputs, [load], **more)
+        assert words in sentence(caught)
+        assert world.state_hash == before

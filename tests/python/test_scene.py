@@ -246,3 +246,55 @@ def test_a_world_of_a_scene_lives():
     batch.advance(0.1)
     with pytest.raises(iso.Error, match="threads = -1"):
         tube().world(threads=-1)
+
+
+def small():
+    return iso.Scene.from_dict(
+        {
+            "name": "small",
+            "bodies": [
+                {
+                    "name": "block",
+                    "mesh": {"box": {"upper": [2, 1, 1], "divisions": [2, 1, 1]}},
+                    "materials": [{"young": 1000, "poisson": 0.5}],
+                }
+            ],
+            "analysis": {"steps": 2},
+            "dirichlet": [{"name": "wall", "where": {"surfaces": "x0"}}],
+            "tractions": [{"name": "pull", "surface": "x1", "traction": [100, 0, 0]}],
+            "probes": [{"name": "tip", "point": [2, 0.5, 0.5]}],
+            "metrics": [{"name": "pulled", "of": "tip", "component": "x"}],
+        }
+    )
+
+
+def test_solve_to_delivers_an_error_or_says_why_not(tmp_path):
+    seen = []
+    found = small().solve_to("5%", tmp_path / "out", threads=1, on_trial=seen.append)
+    assert found.reached and found.end == "reached" and "within 5 %" in found.sentence
+    assert seen == found.trials and found.trials[found.best]["indicator"] <= 0.05
+    assert set(found.errors) == {"pulled", "probe tip"}
+    assert found.errors["pulled"]["relative"] <= 0.05
+    assert found.run.converged and (tmp_path / "out" / "summary.json").exists()
+    # What it found stands alone.
+    again = found.scene.run(threads=1, page=False)
+    assert again.state_hash == found.run.state_hash
+    assert small().solve_to(0.05, threads=1).run.state_hash == found.run.state_hash
+    late = small().solve_to(1e-6, most_levels=1, threads=1)
+    assert not late.reached and late.end == "not_reached" and "not reached" in late.sentence
+    assert late.run.converged
+
+
+@pytest.mark.parametrize("error", ["0%", "-1%", "100%", "much", "", 0.0, -0.1, 1.0, float("nan")])
+def test_errors_without_a_meaning_are_refused(error):
+    with pytest.raises(iso.Error) as caught:
+        small().solve_to(error)
+    sentence(caught)
+
+
+def test_a_callback_that_raises_stops_a_search():
+    def stop(trial):
+        raise RuntimeError(trial["status"])
+
+    with pytest.raises(RuntimeError, match="converged"):
+        small().solve_to(1e-6, threads=1, on_trial=stop)

@@ -23,6 +23,7 @@ struct Knobs {
   double spring = 900;        // of the cable [N/m]
   double push = 1;            // of a force
   double shape = 0;           // of shape_motion()
+  double velocity = 0;        // of shape_motion(), at the start [1/s]
   std::vector<double> field;  // stiffness of cells; empty: uniform
 };
 inline constexpr Vec3 kPushed{1, 1. / 3, 1. / 3}, kPush{1, 4, 6};  // at a node
@@ -124,8 +125,9 @@ inline isochor::CableDef cable_of(const Knobs& knobs, const Kind&) {
   return def;
 }
 
-inline Block make_block(const Knobs& knobs, const Kind& kind) {
-  isochor::WorldOptions options = tight_statics();
+// At rest, or as it begins to move.
+inline Block build_block(const Knobs& knobs, const Kind& kind,
+                         isochor::WorldOptions options = tight_statics()) {
   options.gravity = {0, 0, knobs.gravity};
   options.gravity_curve = isochor::Curve::constant(1);
   Block b{knobs, kind, make_world(options)};
@@ -154,6 +156,17 @@ inline Block make_block(const Knobs& knobs, const Kind& kind) {
   cable.body = b.body;
   b.cable = value(b.world.add(isochor::cable(cable)));
   value(b.world.add_force_at(b.body, kPushed + knobs.shape * shape_motion(kPushed), knobs.push * kPush));
+  if (knobs.velocity != 0) {
+    std::vector<Vec3> velocities = motion;
+    for (Vec3& v : velocities) v = knobs.velocity * v;
+    value(b.world.set_velocities(b.body, velocities));
+  }
+  return b;
+}
+
+// In balance.
+inline Block make_block(const Knobs& knobs, const Kind& kind) {
+  Block b = build_block(knobs, kind);
   must_advance(b.world);
   must_advance(b.world, 0.01);
   return b;

@@ -47,7 +47,7 @@ from .reports import (
     StepReport,
     Volume,
 )
-from .scene import Metric, Run, Scene, library
+from .scene import Metric, Run, Scene, Search, library
 from .studies import Study, study
 from .world import Body, LiveEffect, World
 
@@ -81,6 +81,7 @@ __all__ = [
     "Response",
     "Run",
     "Scene",
+    "Search",
     "Size",
     "StepReport",
     "Study",

@@ -171,6 +171,13 @@ class Parameter:
         """
         return Parameter("shape", _body(body, "Parameter.shape"), motion, _ndim(motion) == 3)
 
+    @staticmethod
+    def initial_velocity(body: _world.Body, motion: ArrayLike) -> Parameter:
+        """Of trajectories: velocities at the start change by this times ``motion``; shapes as of ``shape``."""
+        return Parameter(
+            "initial_velocity", _body(body, "Parameter.initial_velocity"), motion, _ndim(motion) == 3
+        )
+
     def _raw(self) -> list[tuple[Any, ...]]:
         """As many as it has numbers; one for those of cells."""
         whose = None if self._of is None else self._of._id
@@ -179,7 +186,7 @@ class Parameter:
         return [(self.kind, whose, self._step, *self._given)]
 
     def _several(self) -> bool:
-        return self.kind == "shape" and self._given[1]
+        return self.kind in ("shape", "initial_velocity") and self._given[1]
 
     def _is_number(self) -> bool:
         return self.kind != "cell_stiffness" and not self._several()
@@ -190,7 +197,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Gradients:
-    """Outputs of an equilibrium, and their derivatives by parameters."""
+    """Outputs of an equilibrium or of a way through time, and their derivatives by parameters."""
 
     values: np.ndarray
     """(outputs,)"""
@@ -209,15 +216,73 @@ class Gradients:
 
 def ask(world: _world.World, outputs: Any, parameters: Any, mode: str, unstable: bool) -> Gradients:
     """``World.gradients``."""
+    who = "gradients"
+    number = _mode(mode, who)
+    shown = [_output(one, f"{who}: outputs[{k}]") for k, one in enumerate(_list(outputs, "outputs", who))]
+    asked = _parameters(parameters, who)
+    raw, places = _flat(asked)
+    told = world._ready().gradients([one._raw() for one in shown], raw, places, number, bool(unstable))
+    return _told(told, len(shown), asked)
+
+
+def follow(
+    world: _world.World, steps: Any, outputs: Any, parameters: Any, mode: str, kept_states: int
+) -> Gradients:
+    """``World.trajectory_gradients``."""
+    who = "trajectory_gradients"
+    number = _mode(mode, who)
+    lengths = [_world._number(h, f"{who}: steps[{k}]") for k, h in enumerate(_sequence(steps, "steps", who))]
+    shown = [_terms(one, f"{who}: outputs[{k}]") for k, one in enumerate(_list(outputs, "outputs", who))]
+    asked = _parameters(parameters, who)
+    raw, places = _flat(asked)
+    kept = _whole(kept_states, f"{who}: kept_states")
+    terms = [[(step, one._raw()) for step, one in output] for output in shown]
+    told = world._ready().trajectory_gradients(lengths, terms, raw, places, number, kept)
+    return _told(told, len(shown), asked)
+
+
+def _mode(mode: str, who: str) -> int:
     if mode not in _MODES:
-        raise Error(f'gradients: mode is "{mode}"; give "automatic", "adjoint" or "tangent"')
-    shown = [_output(one, k) for k, one in enumerate(_list(outputs, "outputs"))]
-    asked = [_parameter(one, k) for k, one in enumerate(_list(parameters, "parameters"))]
+        raise Error(f'{who}: mode is "{mode}"; give "automatic", "adjoint" or "tangent"')
+    return _MODES.index(mode)
+
+
+def _parameters(parameters: Any, who: str) -> list[Parameter]:
+    return [_parameter(one, f"{who}: parameters[{k}]") for k, one in enumerate(_list(parameters, "parameters", who))]
+
+
+def _flat(asked: list[Parameter]) -> tuple[list[tuple[Any, ...]], list[int]]:
+    """All numbers one after the other, and the parameter that each is of."""
     raw = [numbers for parameter in asked for numbers in parameter._raw()]
-    places = [k for k, parameter in enumerate(asked) for _ in parameter._raw()]
-    told = world._ready().gradients([one._raw() for one in shown], raw, places, _MODES.index(mode), bool(unstable))
+    return raw, [k for k, parameter in enumerate(asked) for _ in parameter._raw()]
+
+
+def _terms(given: Any, who: str) -> list[tuple[int, Output]]:
+    """(step, output), or a list of these, which add up."""
+    terms = [given] if isinstance(given, tuple) else list(_list(given, "the output", who))
+    out = []
+    for term in terms:
+        if not isinstance(term, tuple) or len(term) != 2:
+            raise Error(f"{who}: a value of type {type(term).__name__}; give (step, isochor.Output), or a list of them")
+        out.append((_whole(term[0], f"{who}: step"), _output(term[1], who)))
+    return out
+
+
+def _whole(given: Any, who: str) -> int:
+    if isinstance(given, bool) or not isinstance(given, (int, np.integer)) or abs(int(given)) > 2**31 - 1:
+        raise Error(f"{who} = {given!r}; give a whole number")
+    return int(given)
+
+
+def _sequence(given: Any, name: str, who: str) -> Sequence[Any]:
+    if isinstance(given, np.ndarray) and given.ndim == 1:
+        return list(given)
+    return _list(given, name, who)
+
+
+def _told(told: dict[str, Any], shown: int, asked: list[Parameter]) -> Gradients:
     widths = told.pop("widths")
-    jacobian = told["jacobian"].reshape(len(shown), sum(widths))
+    jacobian = told["jacobian"].reshape(shown, sum(widths))
     by, column, at = [], 0, 0
     for parameter in asked:
         count = len(parameter._raw())
@@ -227,22 +292,21 @@ def ask(world: _world.World, outputs: Any, parameters: Any, mode: str, unstable:
     return Gradients(**{**told, "jacobian": jacobian, "by": tuple(by), "undecided": tuple(told["undecided"])})
 
 
-def _list(given: Any, name: str) -> Sequence[Any]:
+def _list(given: Any, name: str, who: str) -> Sequence[Any]:
     if isinstance(given, (list, tuple)):
         return given
-    raise Error(f"gradients: {name} is a value of type {type(given).__name__}; give a list")
+    raise Error(f"{who}: {name} is a value of type {type(given).__name__}; give a list")
 
 
-def _output(given: Any, place: int) -> Output:
+def _output(given: Any, who: str) -> Output:
     if isinstance(given, Output):
         return given
     raise Error(
-        f"gradients: outputs[{place}]: a value of type {type(given).__name__}; give an isochor.Output, as "
-        "isochor.Output.node() makes"
+        f"{who}: a value of type {type(given).__name__}; give an isochor.Output, as isochor.Output.node() makes"
     )
 
 
-def _parameter(given: Any, place: int) -> Parameter:
+def _parameter(given: Any, who: str) -> Parameter:
     if isinstance(given, Parameter):
         return given
     if isinstance(given, _world.LiveEffect):
@@ -250,8 +314,8 @@ def _parameter(given: Any, place: int) -> Parameter:
     if isinstance(given, tuple) and len(given) == 3 and isinstance(given[0], _world.Body):
         return Parameter.force_at(*given)
     raise Error(
-        f"gradients: parameters[{place}]: a value of type {type(given).__name__}; give an isochor.Parameter, an effect "
-        "for its amount, or (body, point, force)"
+        f"{who}: a value of type {type(given).__name__}; give an isochor.Parameter, an effect for its amount, or "
+        "(body, point, force)"
     )
 
 

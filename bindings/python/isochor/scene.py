@@ -17,6 +17,7 @@ from .world import World
 
 Overrides = Mapping[str, Any]
 StepCallback = Callable[[int, int, float], None]
+TrialCallback = Callable[[dict[str, Any]], None]
 
 
 def _assignments(overrides: Overrides | None) -> list[str]:
@@ -140,6 +141,31 @@ class Scene:
             made._page = _read(Path(place) / "index.html")
         return made
 
+    def solve_to(
+        self,
+        error: float | str,
+        folder: str | os.PathLike[str] | None = None,
+        *,
+        threads: int = 0,
+        budget: float | None = None,
+        most_levels: int = 4,
+        on_trial: TrialCallback | None = None,
+    ) -> Search:
+        """Finds element and mesh so that every metric and probe is within an error, and says how it knows.
+
+        ``error``: relative, as ``0.01`` or ``"1%"``. ``folder``: where the outputs of the best run go; None: none
+        are kept. ``budget``: wall time of all runs together [s]. ``most_levels``: of refinement of the whole mesh;
+        three times as many where cells are refined that count. ``on_trial(trial)`` is called after each run with
+        what it was: ``setting``, ``status``, ``reason``, ``elements``, ``unknowns``, ``seconds``, ``predicted_seconds``,
+        ``indicator``, ``held_by``, ``how``.
+
+        An error that is not reached is no exception: ``reached`` and ``sentence`` say so, and the best run is
+        there. Bad input (a scene without metrics and probes, an error of 0) raises :class:`isochor.Error`.
+        """
+        place = "" if folder is None else os.fspath(folder)
+        asked = error if isinstance(error, str) else float(error)
+        return Search(self._core.solve_to(asked, place, threads, budget, most_levels, on_trial), place)
+
     def __repr__(self) -> str:
         return f'<isochor.Scene "{self.name}">'
 
@@ -259,3 +285,32 @@ class Run(Mapping[str, np.ndarray]):
         steps = len(self._arrays.get("time", (0,))) - 1
         why = f", {self.reason}" if self.reason else ""
         return f'<isochor.Run "{self.scene}": {self.status}, {steps} of {self.steps_asked} steps{why}>'
+
+
+class Search:
+    """What ``Scene.solve_to()`` found: the best run, what its numbers are worth, and the runs on the way."""
+
+    def __init__(self, values: Mapping[str, Any], folder: str) -> None:
+        self.end: str = values["end"]
+        """``reached``, ``not_reached``, ``budget``, ``not_written``, ``failed``."""
+        self.sentence: str = values["sentence"]
+        """How the answer is known, or why there is none."""
+        self.trials: list[dict[str, Any]] = values["trials"]
+        self.best: int | None = values["best"]
+        """Of the trials; None: no run converged."""
+        self.overrides: str = values["overrides"]
+        """What ``--set`` makes the best run out of the scene with, on the command line."""
+        self.seconds: float = values["seconds"]
+        self.errors: dict[str, dict[str, Any]] = {e["name"]: e for e in values["errors"]}
+        """Of each metric, and of each probe as ``"probe NAME"``: ``value``, ``unit``, ``error`` in it, ``relative``
+        (None of a value 0), and ``where`` on the mesh it comes from."""
+        self.scene: Scene | None = None if values["scene"] is None else Scene(values["scene"])
+        """As the best run has it."""
+        self.run: Run | None = None if values["run"] is None else Run(values["run"], folder)
+
+    @property
+    def reached(self) -> bool:
+        return self.end == "reached"
+
+    def __repr__(self) -> str:
+        return f"<isochor.Search {self.end}: {self.sentence}>"

@@ -664,6 +664,25 @@ class World:
         """
         return _gradients.ask(self, outputs, parameters, mode, unstable)
 
+    def trajectory_gradients(
+        self,
+        steps: Sequence[float] | ArrayLike,
+        outputs: Sequence[tuple[int, _gradients.Output] | list[tuple[int, _gradients.Output]]],
+        parameters: Sequence[_gradients.Parameter | LiveEffect | tuple[Body, ArrayLike, ArrayLike]],
+        *,
+        mode: str = "automatic",
+        kept_states: int = 0,
+    ) -> _gradients.Gradients:
+        """Numbers that are seen on a way through time, and their derivatives by what the scene is made of.
+
+        ``steps``: lengths of the increments from where the world is [s]; it goes through them as ``step()`` does and is
+        at their end then, or, where there is an error, where it was. ``outputs``: (step, :class:`isochor.Output`), seen
+        at the end of a step, from 1, or 0 at the start; a list of these is their sum. ``parameters``, ``mode``: as of
+        ``gradients()``. ``kept_states``: how many states of the way are kept, the others being made again; 0: all.
+        Raises :class:`isochor.Error` for what has no gradient: docs/derivatives.md.
+        """
+        return _gradients.follow(self, steps, outputs, parameters, mode, kept_states)
+
     @property
     def constitutive_residual(self) -> float:
         """Largest |phi - target - C lambda| of all rows, relative to their measure."""

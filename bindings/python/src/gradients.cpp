@@ -2,6 +2,8 @@
 // of the package makes them.
 #include "isochor/gradients.h"
 
+#include <pybind11/stl.h>
+
 #include <optional>
 
 #include "hosted_world.h"
@@ -138,6 +140,8 @@ Parameter parameter_of(const Entry& e, Makers& makers) {
                                vector_in(e.given[4], e.about("force")));
   }
   if (kind == "shape") return Parameter::shape(body, points_in(e.given[3], e.about("motion")));
+  if (kind == "initial_velocity")
+    return Parameter::initial_velocity(body, points_in(e.given[3], e.about("motion")));
   if (kind == "cell_stiffness") return Parameter::cell_stiffness(body);
   std::string region = e.given[3].cast<std::string>();
   if (kind == "density") return Parameter::density(body, std::move(region));
@@ -145,20 +149,47 @@ Parameter parameter_of(const Entry& e, Makers& makers) {
   return material_by_keys(body, std::move(region), number_of(e, makers), "");
 }
 
+Entry entry_of(HostedWorld& world, const py::handle& given, const std::string& call, const char* list,
+               std::size_t place) {
+  return Entry{world, given.cast<py::tuple>(), call + ": " + list + "[" + std::to_string(place) + "]"};
+}
+
+std::vector<Parameter> parameters_of(HostedWorld& world, const std::string& call, const py::list& parameters,
+                                     const py::list& places, Makers& makers) {
+  std::vector<Parameter> out;
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const Entry e = entry_of(world, parameters[k], call, "parameters", places[k].cast<std::size_t>());
+    out.push_back(parameter_of(e, makers));
+    out.back().step = e.given[2].cast<double>();
+  }
+  return out;
+}
+
 GradientQuery query_of(HostedWorld& world, const py::list& outputs, const py::list& parameters,
                        const py::list& places, Makers& makers) {
-  const auto entry = [&](const py::handle& given, const char* list, std::size_t place) {
-    return Entry{world, given.cast<py::tuple>(),
-                 "gradients: " + (list + ("[" + std::to_string(place)) + "]")};
-  };
   GradientQuery query;
   for (std::size_t j = 0; j < outputs.size(); ++j)
-    query.outputs.push_back(output_of(entry(outputs[j], "outputs", j)));
-  for (std::size_t k = 0; k < parameters.size(); ++k) {
-    const Entry e = entry(parameters[k], "parameters", places[k].cast<std::size_t>());
-    query.parameters.push_back(parameter_of(e, makers));
-    query.parameters.back().step = e.given[2].cast<double>();
+    query.outputs.push_back(output_of(entry_of(world, outputs[j], "gradients", "outputs", j)));
+  query.parameters = parameters_of(world, "gradients", parameters, places, makers);
+  return query;
+}
+
+constexpr const char* kTrajectory = "trajectory_gradients";
+
+// `outputs`: of each a list of (step, output).
+TrajectoryQuery trajectory_of(HostedWorld& world, std::vector<double> steps, const py::list& outputs,
+                              const py::list& parameters, const py::list& places, Makers& makers) {
+  TrajectoryQuery query;
+  query.steps = std::move(steps);
+  for (std::size_t j = 0; j < outputs.size(); ++j) {
+    TimedOutput& output = query.outputs.emplace_back();
+    for (const py::handle& term : outputs[j].cast<py::list>()) {
+      const auto pair = term.cast<py::tuple>();
+      output.terms.push_back(
+          {pair[0].cast<Index>(), output_of(entry_of(world, pair[1], kTrajectory, "outputs", j))});
+    }
   }
+  query.parameters = parameters_of(world, kTrajectory, parameters, places, makers);
   return query;
 }
 
@@ -183,8 +214,8 @@ py::dict dict_of(Gradients&& told, const std::vector<Index>& numbers_of) {
 }
 
 // Parameters of several numbers are several of the engine's: its sentences with the place in the user's list.
-Error at_its_place(Error error, const py::list& places) {
-  const std::string start = "gradients: parameters[";
+Error at_its_place(Error error, const std::string& call, const py::list& places) {
+  const std::string start = call + ": parameters[";
   if (!error.message.starts_with(start)) return error;
   const std::size_t end = error.message.find(']');
   const auto number = static_cast<std::size_t>(std::stoul(error.message.substr(start.size())));
@@ -207,7 +238,25 @@ py::dict gradients(HostedWorld& world, const py::list& outputs, const py::list& 
     return w.gradients(query);
   });
   makers.raise_again();
-  if (!told) raise(at_its_place(told.failure(), places));
+  if (!told) raise(at_its_place(told.failure(), "gradients", places));
+  return dict_of(std::move(told).value(), numbers_of);
+}
+
+py::dict trajectory_gradients(HostedWorld& world, std::vector<double> steps, const py::list& outputs,
+                              const py::list& parameters, const py::list& places, int mode, Index kept) {
+  need(world.work(kTrajectory, [](World& w) { return w.compile(); }));
+  Makers makers;
+  TrajectoryQuery query = trajectory_of(world, std::move(steps), outputs, parameters, places, makers);
+  query.mode = static_cast<GradientQuery::Mode>(mode);
+  query.kept_states = kept;
+  std::vector<Index> numbers_of;
+  auto told = world.work(kTrajectory, [&](World& w) {
+    for (const Parameter& p : query.parameters)
+      numbers_of.push_back(p.kind == Parameter::Kind::cells ? w.mesh(p.body).cell_count() : 1);
+    return w.trajectory_gradients(query);
+  });
+  makers.raise_again();
+  if (!told) raise(at_its_place(told.failure(), kTrajectory, places));
   return dict_of(std::move(told).value(), numbers_of);
 }
 
@@ -215,6 +264,7 @@ py::dict gradients(HostedWorld& world, const py::list& outputs, const py::list& 
 
 void bind_gradients(HostedWorldClass& world) {
   world.def("gradients", &gradients);
+  world.def("trajectory_gradients", &trajectory_gradients);
 }
 
 }  // namespace isochor::python

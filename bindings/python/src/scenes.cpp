@@ -7,8 +7,8 @@
 #include "hosted_world.h"
 #include "interruption.h"
 #include "reports.h"
+#include "scene_runs.h"
 #include "scenes/library.h"
-#include "scenes/run/run.h"
 #include "scenes/scene_file.h"
 
 namespace isochor::python {
@@ -138,6 +138,8 @@ py::list metrics_of(const RunResult& result) {
   return out;
 }
 
+}  // namespace
+
 py::dict dict_of(const RunResult& result) {
   py::dict out;
   out["status"] = to_string(result.status);
@@ -153,6 +155,8 @@ py::dict dict_of(const RunResult& result) {
   out["summary"] = ran ? summary_json(result) : failure_json(result);
   return out;
 }
+
+namespace {
 
 py::dict run(const SceneDef& scene, const std::string& folder, int threads, std::optional<double> budget,
              bool resume, const py::object& on_step) {
@@ -228,7 +232,8 @@ void bind_scenes(py::module_& module) {
              return py::make_tuple(plan.steps, plan.h, scene.analysis.path_step);
            })
       .def("world", &world_of)
-      .def("run", &run);
+      .def("run", &run)
+      .def("solve_to", &solve_to);
   module.def("library", &library);
   module.def("scenes_folder", &scenes_folder);
 }
