@@ -231,6 +231,7 @@ TEST_CASE("what is not shared out over ranks is refused on all of them, by name"
       },
       1, 1);
   for (const Outcome& rank : refused) {
-    CHECK_THAT(rank.refusal, ContainsSubstring("augmented_gradients") && ContainsSubstring("run on one process"));
+    CHECK_THAT(rank.refusal,
+               ContainsSubstring("augmented_gradients") && ContainsSubstring("run on one process"));
   }
 }

@@ -118,8 +118,8 @@ std::string difference(const Run& alone, const Run& shared, double& largest) {
   if (!alone.refusal.empty()) return "the engine alone refuses: " + alone.refusal;
   if (!shared.refusal.empty()) return "refused: " + shared.refusal;
   if (alone.steps.size() != shared.steps.size())
-    return std::to_string(shared.steps.size()) + " steps, alone " + std::to_string(alone.steps.size()) + "; " +
-           shared.steps.back().reason;
+    return std::to_string(shared.steps.size()) + " steps, alone " + std::to_string(alone.steps.size()) +
+           "; " + shared.steps.back().reason;
   for (std::size_t s = 0; s < alone.steps.size(); ++s) {
     const Step &a = alone.steps[s], &b = shared.steps[s];
     const std::string where = "step " + std::to_string(s + 1) + ": ";
