@@ -6,10 +6,13 @@
 #include <barrier>
 #include <thread>
 
+#include "engine/base/base.h"
 #include "engine/solvers/linear_solver.h"
 #include "support/worlds.h"
 
 using namespace test;
+using isochor::at;
+using isochor::norm;
 using isochor::World;
 
 namespace {
@@ -199,8 +202,18 @@ TEST_CASE("a pressed block on ranks is that of one process, whatever the element
   compare(options, with(Element::hex8, VolumeSpace::element, 0.5, isochor::CellType::hex8), 0.5, 2, 0.25);
   // Condensed, and one row over all of it that is bordered.
   compare(options, with(Element::tet4, VolumeSpace::element, 0.4), 0.5, 2, 0.25);
-  options.method = isochor::Method::condensation;
-  compare(options, with(Element::tet4, VolumeSpace::body, 0.45), 0.5, 2, 0.25);
+  const auto bordered = [](World& world) {
+    const isochor::BodyId body =
+        add_body(world, block({0, 0, 0}, {0.2, 0.1, 0.1}, {6, 2, 2}), Element::tet4, neo_hookean(1e5, 0.45));
+    isochor::VolumeDef whole;
+    whole.body = body;
+    whole.space = VolumeSpace::body;
+    whole.treatment = isochor::RowTreatment::bordered;
+    value(world.add(isochor::volume(whole)));
+    hold(world, body, {"x0"});
+    hold(world, body, {"x1"}, {}, {-0.03, 0.01, 0});
+  };
+  compare(options, bordered, 0.5, 2, 0.25);
 }
 
 TEST_CASE("a thrown block with a consistent mass matrix falls on ranks as on one process") {
