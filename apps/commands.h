@@ -38,6 +38,7 @@ struct RunArguments {
   bool resume = false, price = false;
   std::optional<std::string> error;  // "1%" or "0.01": search for it
   std::optional<double> checkpoint;  // [s], in place of outputs.checkpoint_seconds
+  std::string petsc;                 // options of PETSc
 };
 
 // Where memory ran out: says so, and ends the process at once. Threads of libraries that found no memory
@@ -105,7 +106,12 @@ bool open_in_browser(const std::string& address);
 // Says what is wrong with the arguments; bad_input.
 int refuse(const std::string& what);
 
-int run(const RunArguments& arguments);
+// `ranks`: processes that run it together; null: this one alone.
+int run(const RunArguments& arguments, std::shared_ptr<const Ranks> ranks = {});
+#ifdef ISOCHOR_HAVE_PETSC
+// As one of the processes that mpirun has started.
+int run_on_ranks(RunArguments arguments);
+#endif
 int live(const LiveArguments& arguments);
 // A scene as one page; dynamic already where that was asked for.
 int export_live(const LiveArguments& arguments, const SceneDef& scene);

@@ -7,6 +7,9 @@
 #include <new>
 
 #include "apps/commands.h"
+#ifdef ISOCHOR_HAVE_PETSC
+#include "petsc/session.h"
+#endif
 
 namespace {
 
@@ -48,6 +51,10 @@ void add_run(CLI::App& top, app::RunArguments& a) {
       ->excludes("--accuracy", "--resume");
   c->add_flag("--price", a.price, "Say what 10, 3, 1 and 0.3 % would take: element, mesh, time, memory")
       ->excludes("--accuracy", "--resume", "--error");
+#ifdef ISOCHOR_HAVE_PETSC
+  c->add_option("--petsc", a.petsc, "Options of PETSc, which solves under mpirun or where this is given")
+      ->type_name("'-KEY VALUE ...'");
+#endif
   c->footer(kRunFooter);
 }
 
@@ -238,6 +245,9 @@ int dispatch(int argc, char** argv) {
   if (top.got_subcommand("study")) return app::study(study);
   if (top.got_subcommand("view")) return app::view(view);
   if (top.got_subcommand("live")) return app::live(live);
+#ifdef ISOCHOR_HAVE_PETSC
+  if (PetscSession::launched() || !run.petsc.empty()) return app::run_on_ranks(run);
+#endif
   return app::run(run);
 }
 

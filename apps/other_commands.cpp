@@ -10,6 +10,9 @@
 #include "scenes/run/run.h"
 #include "scenes/scene_file.h"
 #include "scenes/thin_walls.h"
+#ifdef ISOCHOR_HAVE_PETSC
+#include "petsc/session.h"
+#endif
 
 namespace isochor::app {
 
@@ -177,7 +180,10 @@ int check(const std::vector<std::string>& meshes, double scale, bool triangles, 
 }
 
 int version(bool json) {
-  const std::vector<SolverBackend> backends = linear_solver_backends();
+  std::vector<SolverBackend> backends = linear_solver_backends();
+#ifdef ISOCHOR_HAVE_PETSC
+  backends.push_back({"PETSc (" + mpi_version() + ")", petsc_version(), "BSD-2-Clause"});
+#endif
   if (json) {
     Json solvers = Json::array();
     for (const SolverBackend& b : backends) {

@@ -6,6 +6,7 @@
 #include "apps/commands.h"
 #include "apps/stop.h"
 #include "apps/table.h"
+#include "engine/base/base.h"
 #include "scenes/library.h"
 #include "scenes/run/accuracy.h"
 #include "scenes/run/outputs.h"
@@ -164,12 +165,31 @@ Result<SceneDef> find_scene_named(const std::string& name, const Overrides& over
                "; a scene file ends in .json"};
 }
 
-int run(const RunArguments& a) {
-  auto scene = find_scene_named(a.scene, a.overrides);
-  if (!scene) {
-    std::fprintf(stderr, "isochor: %s\n", scene.error().c_str());
-    return bad_input;
+namespace {
+
+// Says what is wrong; of ranks that find the same the first one. False where no rank found anything.
+bool tell(const std::string& trouble, const Ranks* ranks) {
+  if (!ranks) {
+    if (!trouble.empty()) std::fprintf(stderr, "isochor: %s\n", trouble.c_str());
+    return !trouble.empty();
   }
+  Hash hash;
+  hash.add(std::span<const char>(trouble));
+  const auto print = static_cast<double>(hash.value() >> 32);
+  double of_root[2] = {ranks->rank() == 0 ? print : 0, trouble.empty() ? 0.0 : 1.0};
+  ranks->sum(of_root);
+  if (ranks->rank() == 0 && !trouble.empty()) std::fprintf(stderr, "isochor: %s\n", trouble.c_str());
+  if (ranks->rank() != 0 && !trouble.empty() && of_root[0] != print)
+    std::fprintf(stderr, "isochor: rank %d: %s\n", ranks->rank(), trouble.c_str());
+  return of_root[1] > 0;
+}
+
+}  // namespace
+
+int run(const RunArguments& a, std::shared_ptr<const Ranks> ranks) {
+  auto scene = find_scene_named(a.scene, a.overrides);
+  if (tell(scene ? "" : scene.error(), ranks.get())) return bad_input;
+  const bool first_rank = !ranks || ranks->rank() == 0;
   if (a.checkpoint) scene.value().outputs.checkpoint_seconds = *a.checkpoint;
   stop_on_signals();
   if (a.price) return price(a, scene.value());
@@ -181,9 +201,10 @@ int run(const RunArguments& a) {
   options.budget = a.budget;
   options.resume = a.resume;
   options.stop = stop_wanted;
+  options.ranks = ranks;
   options.origins = a.accuracy;
   options.log = [&](const std::string& text) {
-    if (!a.quiet) std::fprintf(stderr, "isochor: note: %s\n", text.c_str());
+    if (!a.quiet && first_rank) std::fprintf(stderr, "isochor: note: %s\n", text.c_str());
   };
   Progress progress;
   bool first = true;
@@ -195,12 +216,13 @@ int run(const RunArguments& a) {
   };
   const RunResult result = run_scene(scene.value(), options);
   if (result.status == RunStatus::bad_input) {
-    std::fprintf(stderr, "isochor: %s\n", result.reason.c_str());
+    tell(result.reason, ranks.get());
     return bad_input;
   }
   if (result.ended_before) {
-    std::fprintf(stderr, "isochor: note: the run in %s has converged already; there is nothing to resume\n",
-                 options.folder.c_str());
+    if (first_rank)
+      std::fprintf(stderr, "isochor: note: the run in %s has converged already; there is nothing to resume\n",
+                   options.folder.c_str());
     return success;
   }
   std::optional<Accuracy> accuracy;
@@ -216,8 +238,7 @@ int run(const RunArguments& a) {
   if (tables) print_summary(result, options.folder);
   if (accuracy && (tables || !accuracy->reason.empty())) print_accuracy(*accuracy);
   if (a.explain) print_explanation_of(scene.value(), result);
-  if (!result.reason.empty())
-    std::fprintf(stderr, "isochor: %s: %s\n", to_string(result.status), result.reason.c_str());
+  tell(result.reason.empty() ? "" : to_string(result.status) + (": " + result.reason), ranks.get());
   return exit_code(result.status);
 }
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs what a build on Debian 12 (or a relative of it) needs and does not have. Does nothing when all is there.
+# With --petsc: also what ISOCHOR_WITH_PETSC needs.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build ccache libeigen3-dev libsuitesparse-dev libmumps-seq-dev libmetis-dev
@@ -10,6 +11,7 @@ packages=(g++ cmake ninja-build ccache libeigen3-dev libsuitesparse-dev libmumps
 command -v node >/dev/null || packages+=(nodejs)
 command -v npm >/dev/null || packages+=(npm)
 command -v chromium >/dev/null || packages+=(chromium fonts-dejavu-core)
+[[ " $* " == *" --petsc "* ]] && packages+=(libpetsc-real-dev openmpi-bin pkg-config)
 
 missing=()
 for package in "${packages[@]}"; do

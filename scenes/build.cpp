@@ -80,7 +80,9 @@ Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
   WorldOptions world_options = scene.analysis.options;
   world_options.scheme = make_scheme(scene.analysis);
   world_options.threads = options.threads;
-  auto world = World::create(std::move(world_options));
+  Host host;
+  host.ranks = options.ranks;
+  auto world = World::create(std::move(world_options), std::move(host));
   if (!world) return world.failure();
   BuiltScene built{std::move(world).value()};
   if (auto r = add_bodies(scene, options, built); !r) return r.failure();

@@ -289,8 +289,9 @@ struct SceneParts {
 };
 
 struct BuildOptions {
-  int threads = 0;              // 0: all the machine has
-  SceneParts* parts = nullptr;  // where given: copies of bodies and effects are put here
+  int threads = 0;                       // 0: all the machine has
+  SceneParts* parts = nullptr;           // where given: copies of bodies and effects are put here
+  std::shared_ptr<const Ranks> ranks{};  // as Host::ranks
 };
 
 // The material of a definition; messages name the law and the constant. Files of fields are looked for in

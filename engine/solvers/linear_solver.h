@@ -33,6 +33,10 @@ struct SymmetricPattern {
   // backends without pivoting know from it which way to regularize. Without it, the rows with a diagonal <= 0
   // are taken for that.
   std::vector<std::uint8_t> multiplier;
+  // Of a matrix that is shared out (empty: it is not): the rank of each unknown. The lists of entries then
+  // hold those that this rank has, each entry of the whole matrix being on one rank; columns may lack a
+  // diagonal, and vectors are as long as ever.
+  std::vector<Index> owner;
   // Optional: a pattern of the same unknowns that differs in a few places, whose pivot sequence may serve.
   std::shared_ptr<OrderingBase> base;
   // Optional: where solvers leave what they found out about the pattern, for others that are given it.

@@ -37,6 +37,9 @@ bool Methods::large(const SystemParts& parts) const {
 
 Result<void> Methods::choose(SystemParts parts, const System* like) {
   if (std::string why = incompatible(parts, options_); !why.empty()) return Error{std::move(why)};
+  if (ranks_) {
+    if (std::string why = not_across_ranks(parts, options_); !why.empty()) return Error{std::move(why)};
+  }
   return make(std::move(parts), false, like);
 }
 
@@ -50,6 +53,9 @@ Result<void> Methods::replace_stencils(std::vector<std::shared_ptr<const Stencil
 }
 
 Result<Methods::Renewed> Methods::renew(SystemParts parts) {
+  if (ranks_)
+    return Error{
+        "world: a scene that is shared out over ranks does not change yet; make another world of it"};
   if (std::string why = incompatible(parts, options_); !why.empty()) return Error{std::move(why)};
   const bool prefer_iterative = large(parts), same_solver = prefer_iterative == large(system_->parts());
   auto compiled = compile_system(std::move(parts), system_.get());
@@ -79,6 +85,7 @@ Result<Methods::Renewed> Methods::renew(SystemParts parts) {
 Result<std::shared_ptr<System>> Methods::compile_system(SystemParts parts, const System* like) const {
   const bool ascent = climbs(options_.method);
   parts.treatment = treatment_of(options_.method);
+  parts.ranks = ranks_;
   // Condensed rows make the stiffness as stiff as they are, which is no matter to a factorization but slows
   // an iteration.
   if (options_.method == Method::automatic && (large(parts) || options_.solver == Solver::iterative))
@@ -133,18 +140,18 @@ Result<void> Methods::make(SystemParts parts, bool keep_solvers, const System* l
   return make_for(std::move(compiled).value(), prefer_iterative, keep_solvers);
 }
 
-SolverWishes Methods::wishes(bool prefer_iterative) const {
+std::unique_ptr<LinearSolver> Methods::make_solver(bool prefer_iterative) const {
+  if (ranks_) return ranks_->linear_solver(options_.solver, prefer_iterative);
   SolverWishes wishes;
   wishes.prefer_iterative = prefer_iterative;
   // Next to a limit point the sign of a vanishing eigenvalue counts.
   wishes.single_precision = !options_.scheme->follows_paths();
-  return wishes;
+  return make_linear_solver(options_.solver, wishes);
 }
 
 Result<void> Methods::make_for(std::shared_ptr<System> system, bool prefer_iterative, bool keep_solvers) {
   std::unique_ptr<LinearSolver> solver, unsymmetric;
-  if (!keep_solvers)
-    solver = make_linear_solver(options_.solver, wishes(prefer_iterative && !system->couples()));
+  if (!keep_solvers) solver = make_solver(prefer_iterative && !system->couples());
   if (!keep_solvers && !solver)
     return Error{"world: this build does not have the linear solver that is asked for"};
   std::string counts = count_rows(*system);
@@ -172,7 +179,7 @@ void Methods::drop() {
 
 void Methods::remake() {
   const bool prefer_iterative = large(system_->parts()) && !system_->couples();
-  auto solver = make_linear_solver(options_.solver, wishes(prefer_iterative));
+  auto solver = make_solver(prefer_iterative);
   std::unique_ptr<LinearSolver> unsymmetric;
   if (system_->couples()) unsymmetric = make_unsymmetric_solver(options_.solver);
   list_stand_ins();

@@ -10,8 +10,9 @@ namespace isochor {
 
 class Methods {
  public:
-  // Both outlive this.
-  Methods(const WorldOptions& options, const Parallel& parallel) : options_(options), parallel_(parallel) {}
+  // The first two outlive this.
+  Methods(const WorldOptions& options, const Parallel& parallel, std::shared_ptr<const Ranks> ranks = {})
+      : options_(options), parallel_(parallel), ranks_(std::move(ranks)) {}
 
   // Chooses treatment of rows, linear solver and method; refuses what does not go together. Tables of `like`
   // are shared where they are the same.
@@ -50,7 +51,7 @@ class Methods {
   Result<void> make_for(std::shared_ptr<System> system, bool prefer_iterative, bool keep_solvers);
   void list_stand_ins();
   Result<std::shared_ptr<System>> compile_system(SystemParts parts, const System* like) const;
-  SolverWishes wishes(bool prefer_iterative) const;
+  std::unique_ptr<LinearSolver> make_solver(bool prefer_iterative) const;
   std::unique_ptr<LinearSolver> release_solver(std::unique_ptr<LinearSolver>& unsymmetric);
   void make_chosen(std::unique_ptr<LinearSolver> solver, std::unique_ptr<LinearSolver> unsymmetric);
   bool large(const SystemParts& parts) const;
@@ -58,6 +59,7 @@ class Methods {
 
   const WorldOptions& options_;
   const Parallel& parallel_;
+  std::shared_ptr<const Ranks> ranks_;
   std::function<bool()> interrupt_;
   std::shared_ptr<System> system_;
   std::unique_ptr<SaddlePoint> chosen_;
@@ -69,6 +71,8 @@ class Methods {
 
 std::string_view to_string(Method method);
 RowTreatment treatment_of(Method method);
+// Why a scene cannot be shared out over ranks; empty where it can.
+std::string not_across_ranks(const SystemParts& parts, const WorldOptions& options);
 // Why scheme, method and pools do not go together; empty where they do.
 std::string incompatible(const SystemParts& parts, const WorldOptions& options);
 

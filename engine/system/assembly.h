@@ -1,5 +1,6 @@
 // Evaluates the stencils of a system into their slots and sums the slots in fixed order. All memory is taken
-// once, at construction; a call allocates nothing.
+// once, at construction; a call allocates nothing. Where the system is shared out over ranks, what these
+// functions return is the same on all of them, but for what goes into the matrix and row_jacobian().
 #pragma once
 
 #include "engine/base/parallel.h"
@@ -65,6 +66,7 @@ class Assembly {
 
  private:
   void evaluate_pool(std::size_t p, Want want, Definiteness definiteness, std::span<const Vec3> x);
+  void exchange(Want want);
   void gather_block(std::int64_t block, Mat3& sum) const;
   void gather_multipliers(std::span<const double> lambda, std::span<const double> prescribed,
                           std::span<double> out) const;
@@ -80,6 +82,9 @@ class Assembly {
   std::vector<Vec3> gradient_, jacobian_;
   std::vector<Mat3> hessian_;
   std::vector<Vec3> product_;  // per gradient slot, for hessian_times
+  // Of the last evaluation, where the system is shared out: energy, sum of magnitudes and all rows; and the
+  // force on each node with the sum of its parts' magnitudes, four numbers a node.
+  std::vector<double> sums_, forces_;
 };
 
 }  // namespace isochor

@@ -64,19 +64,21 @@ std::size_t bytes(const FilledRows& r) {
 }  // namespace
 
 std::size_t System::table_bytes() const {
-  const auto& [unknowns, gathers, treated, matrix, pools, layout] = *tables_;
+  const auto& [unknowns, gathers, treated, matrix, pools, shares, layout] = *tables_;
   const auto& pattern = matrix.pattern;
+  std::size_t shared = shares ? shares->bytes() + bytes(pattern.owner) : 0;
+  for (const auto& runs : pools.runs) shared += bytes(runs);
   return bytes(unknowns.first) + bytes(unknowns.basis_of) + bytes(unknowns.bases) + bytes(gathers.row) +
          bytes(gathers.function) + bytes(gathers.residual) + bytes(gathers.block) + bytes(gathers.jacobian) +
          bytes(gathers.block_ends) + bytes(gathers.jacobian_ends) + bytes(gathers.row_begin) +
          bytes(treated.kept) + bytes(treated.unknown) + bytes(treated.condensed) + bytes(treated.augmented) +
          bytes(treated.bordered) + bytes(treated.dual) + bytes(matrix.block) + bytes(matrix.jacobian) +
          bytes(matrix.compliance) + bytes(matrix.diagonal) + bytes(pattern.column_start) +
-         bytes(pattern.row) + bytes(pattern.group) + bytes(pools.slots);
+         bytes(pattern.row) + bytes(pattern.group) + bytes(pools.slots) + shared;
 }
 
 bool same_structure(const SystemParts& a, const SystemParts& b) {
-  return a.rest.size() == b.rest.size() && a.treatment == b.treatment &&
+  return a.rest.size() == b.rest.size() && a.ranks == b.ranks && a.treatment == b.treatment &&
          a.border_wide_rows == b.border_wide_rows && same_list(a.stencil_pools, b.stencil_pools) &&
          same_list(a.row_pools, b.row_pools) && same_list(a.prescribers, b.prescribers);
 }

@@ -6,6 +6,7 @@
 #include "engine/solvers/front/front_tree.h"
 #include "engine/solvers/ordering.h"
 #include "engine/system/row_treatment.h"
+#include "engine/system/share_out.h"
 #include "engine/system/structure.h"
 
 namespace isochor {
@@ -80,6 +81,7 @@ class SystemCompiler {
 
   // With the tables of a system of the same structure; false: its structure is another.
   bool take_tables(const System& like) {
+    if (s_->parts_.ranks || like.shares()) return false;
     if (!same_structure(s_->parts_, like.parts_) || s_->facets_.coupled != like.facets_.coupled) return false;
     s_->tables_ = like.tables_;
     // Numbers have a say in how rows are treated.
@@ -101,6 +103,7 @@ class SystemCompiler {
 
   Result<std::shared_ptr<System>> run() {
     measure();
+    if (s_->parts_.ranks) t_->shares = share_nodes(s_->parts_);
     place_pools();
     number_rows();
     if (auto r = number_unknowns(); !r) return r.failure();
@@ -112,15 +115,23 @@ class SystemCompiler {
     collect_compliance();
     collect_bounds();
     if (auto r = RowTreatments(*s_, t_->treated).sort(); !r) return r.failure();
+    if (shares()) {
+      if (auto r = share_rows(*s_, *t_); !r) return r.failure();
+    }
     build_kkt();
     locate_entries();
-    group_unknowns();
+    if (!shares()) group_unknowns();
     find_ordering_base();
     hash_layout();
     return s_;
   }
 
  private:
+  const Shares* shares() const { return t_->shares.get(); }
+  // Without ranks this one has everything.
+  bool owns(Index node) const { return !shares() || shares()->owns(node); }
+  bool owns_row(Index row) const { return !shares() || shares()->owns_row(row); }
+
   void measure() {
     Vec3 lo{}, hi{};
     bool first = true;
@@ -139,12 +150,21 @@ class SystemCompiler {
     PoolPlace at_place;
     for (const auto& pool : s_->parts_.stencil_pools) {
       t_->pools.slots.push_back(at_place);
-      const std::int64_t slots = static_cast<std::int64_t>(pool->nodes().item.size());
+      t_->pools.runs.push_back(shares() ? shared_runs(s_->parts_, *pool, *shares())
+                                        : std::vector<StencilRun>{{0, pool->stencils()}});
       at_place.energy += pool->stencils();
       at_place.function += static_cast<std::int64_t>(pool->stencils()) * pool->functions();
-      at_place.gradient += slots;
-      at_place.jacobian += slots * pool->functions();
-      if (pool->has_hessian()) at_place.hessian += pool->hessian_offset().back();
+      for (StencilRun& run : t_->pools.runs.back()) {
+        const std::int64_t from = pool->nodes().offset[at(run.begin)], to = pool->nodes().offset[at(run.end)];
+        run.gradient = at_place.gradient - from;
+        run.jacobian = at_place.jacobian - from * pool->functions();
+        at_place.gradient += to - from;
+        at_place.jacobian += (to - from) * pool->functions();
+        if (!pool->has_hessian()) continue;
+        const std::int64_t first = pool->hessian_offset()[at(run.begin)];
+        run.hessian = at_place.hessian - first;
+        at_place.hessian += pool->hessian_offset()[at(run.end)] - first;
+      }
     }
     t_->pools.total = at_place;
   }
@@ -222,6 +242,13 @@ class SystemCompiler {
     return base + s_->row_data_.first[pool] + row;
   }
 
+  // Of a function of the pool that `rows` are over: this rank adds it to rows.
+  bool answers_for(const RowPool& rows, Index function) const {
+    const Index functions = s_->parts_.stencil_pools[at(rows.stencil_pool)]->functions();
+    const StencilRun* run = t_->pools.run_of(rows.stencil_pool, function / functions);
+    return run && run->own;
+  }
+
   void gather_rows() {
     std::vector<Contribution> to_row, to_function;
     for (std::size_t p = 0; p < s_->parts_.row_pools.size(); ++p) {
@@ -231,7 +258,8 @@ class SystemCompiler {
         for (Index k = pool.map.offset[at(r)]; k < pool.map.offset[at(r) + 1]; ++k) {
           const std::int64_t f = base + pool.map.item[at(k)];
           const Index g = gather_row(p, r);
-          to_row.push_back({static_cast<std::uint64_t>(g), f, pool.weight[at(k)]});
+          if (!shares() || answers_for(pool, pool.map.item[at(k)]))
+            to_row.push_back({static_cast<std::uint64_t>(g), f, pool.weight[at(k)]});
           to_function.push_back({static_cast<std::uint64_t>(f), g, pool.weight[at(k)]});
         }
       }
@@ -256,14 +284,31 @@ class SystemCompiler {
   void gather_residual() {
     std::vector<Contribution> c;
     for (std::size_t p = 0; p < s_->parts_.stencil_pools.size(); ++p) {
-      const auto& item = s_->parts_.stencil_pools[p]->nodes().item;
-      for (std::size_t k = 0; k < item.size(); ++k) {
-        c.push_back({static_cast<std::uint64_t>(item[k]),
-                     t_->pools.slots[p].gradient + static_cast<std::int64_t>(k), 1});
+      const Lists& nodes = s_->parts_.stencil_pools[p]->nodes();
+      for (const StencilRun& run : t_->pools.runs[p]) {
+        for (Index k = nodes.offset[at(run.begin)]; k < nodes.offset[at(run.end)]; ++k) {
+          const Index node = nodes.item[at(k)];
+          if (owns(node)) c.push_back({static_cast<std::uint64_t>(node), run.gradient + k, 1});
+        }
       }
     }
     fill_gather(c, s_->nodes(), t_->gathers.residual);
     t_->gathers.residual.weight.clear();
+  }
+
+  // The destination is the lower triangle, at the owner of the larger node; a block met the other way round
+  // is marked by complement.
+  void gather_blocks_of(std::span<const Index> nodes, std::int64_t slot, std::vector<Contribution>& c) const {
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      for (std::size_t b = 0; b <= a; ++b, ++slot) {
+        if (!owns(std::max(nodes[a], nodes[b]))) continue;
+        if (nodes[a] >= nodes[b]) {
+          c.push_back({key_of(nodes[a], nodes[b]), slot, 1});
+        } else {
+          c.push_back({key_of(nodes[b], nodes[a]), ~slot, 1});
+        }
+      }
+    }
   }
 
   void gather_blocks() {
@@ -271,19 +316,9 @@ class SystemCompiler {
     for (std::size_t p = 0; p < s_->parts_.stencil_pools.size(); ++p) {
       const StencilPool& pool = *s_->parts_.stencil_pools[p];
       if (!pool.has_hessian()) continue;
-      for (Index s = 0; s < pool.stencils(); ++s) {
-        const auto nodes = pool.nodes()[s];
-        std::int64_t slot = t_->pools.slots[p].hessian + pool.hessian_offset()[at(s)];
-        for (std::size_t a = 0; a < nodes.size(); ++a) {
-          for (std::size_t b = 0; b <= a; ++b, ++slot) {
-            // The destination is the lower triangle; a block met the other way round is marked by complement.
-            if (nodes[a] >= nodes[b]) {
-              c.push_back({key_of(nodes[a], nodes[b]), slot, 1});
-            } else {
-              c.push_back({key_of(nodes[b], nodes[a]), ~slot, 1});
-            }
-          }
-        }
+      for (const StencilRun& run : t_->pools.runs[p]) {
+        for (Index s = run.begin; s < run.end; ++s)
+          gather_blocks_of(pool.nodes()[s], run.hessian + pool.hessian_offset()[at(s)], c);
       }
     }
     // Mass, shifts and prescribed motion need every diagonal block; a source is not needed for one.
@@ -293,7 +328,7 @@ class SystemCompiler {
     }
     gather_by_key(c, false, t_->gathers.block, t_->gathers.block_ends);
     for (Index i = 0; i < s_->nodes(); ++i) {
-      if (has_diagonal[at(i)]) continue;
+      if (has_diagonal[at(i)] || !owns(i)) continue;
       t_->gathers.block_ends.push_back({i, i});
       t_->gathers.block.offset.push_back(t_->gathers.block.offset.back());
     }
@@ -309,6 +344,7 @@ class SystemCompiler {
     std::sort(blocks.begin(), blocks.end());
     s_->block_mass_.assign(s_->gathers().block_ends.size(), 0);
     for (const MassEntry& e : entries) {
+      if (!owns(e.row)) continue;
       const auto found =
           std::lower_bound(blocks.begin(), blocks.end(), std::pair(key_of(e.row, e.col), std::size_t{0}));
       s_->block_mass_[found->second] += e.value;
@@ -321,27 +357,24 @@ class SystemCompiler {
       const RowPool& rows = *s_->parts_.row_pools[p];
       if (rows.law != RowLaw::compliant) continue;
       const StencilPool& pool = *s_->parts_.stencil_pools[at(rows.stencil_pool)];
-      const PoolPlace& place = t_->pools.slots[at(rows.stencil_pool)];
       const Index functions = pool.functions();
       for (Index r = 0; r < rows.rows(); ++r) {
         for (Index k = rows.map.offset[at(r)]; k < rows.map.offset[at(r) + 1]; ++k) {
           const Index s = rows.map.item[at(k)] / functions, f = rows.map.item[at(k)] % functions;
           const auto nodes = pool.nodes()[s];
-          const std::int64_t first = place.jacobian +
+          const StencilRun* run = t_->pools.run_of(rows.stencil_pool, s);
+          const std::int64_t first = (run ? run->jacobian : 0) +
                                      static_cast<std::int64_t>(pool.nodes().offset[at(s)]) * functions +
                                      static_cast<std::int64_t>(f) * static_cast<std::int64_t>(nodes.size());
           for (std::size_t a = 0; a < nodes.size(); ++a) {
-            c.push_back({key_of(s_->row_data_.first[p] + r, nodes[a]), first + static_cast<std::int64_t>(a),
-                         rows.weight[at(k)]});
+            c.push_back({key_of(s_->row_data_.first[p] + r, nodes[a]),
+                         run ? first + static_cast<std::int64_t>(a) : -1, rows.weight[at(k)]});
           }
         }
       }
     }
     gather_by_key(c, true, t_->gathers.jacobian, t_->gathers.jacobian_ends);
-    auto& begin = t_->gathers.row_begin;
-    begin.assign(at(s_->row_data_.compliant) + 1, 0);
-    for (const auto& [row, node] : t_->gathers.jacobian_ends) ++begin[at(row) + 1];
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    find_row_begins(t_->gathers, s_->row_data_.compliant);
   }
 
   void collect_compliance() {
@@ -415,13 +448,16 @@ class SystemCompiler {
     const auto& unknown = t_->treated.unknown;
     std::vector<std::uint64_t> blocks, row_entries, compliance_entries;  // keys: column, row
     for (const auto& [i, j] : t_->gathers.block_ends) blocks.push_back(key_of(j, i));
-    for (const FilledRows* rows : {&t_->treated.condensed, &t_->treated.augmented})
-      for_filled_blocks(*rows, [&](Index i, Index j) { blocks.push_back(key_of(j, i)); });
+    for (const FilledRows* rows : {&t_->treated.condensed, &t_->treated.augmented}) {
+      for_filled_blocks(*rows, [&](Index i, Index j) {
+        if (owns(i)) blocks.push_back(key_of(j, i));
+      });
+    }
     for (const auto& [row, node] : t_->gathers.jacobian_ends) {
-      if (unknown[at(row)] >= 0) row_entries.push_back(key_of(node, unknown[at(row)]));
+      if (unknown[at(row)] >= 0 && owns(node)) row_entries.push_back(key_of(node, unknown[at(row)]));
     }
     for (const ComplianceEntry& e : s_->row_data_.compliance) {
-      if (unknown[at(e.row)] >= 0)
+      if (unknown[at(e.row)] >= 0 && owns_row(e.row))
         compliance_entries.push_back(key_of(unknown[at(e.col)], unknown[at(e.row)]));
     }
     for (auto* keys : {&blocks, &row_entries, &compliance_entries}) {
@@ -491,7 +527,7 @@ class SystemCompiler {
           places.push_back(-1);
         } else if (is_row) {
           const Index u = t_->treated.unknown[at(row_or_node)];
-          places.push_back(u < 0 ? -1 : place(u, c));
+          places.push_back(u < 0 || !owns(node) ? -1 : place(u, c));
         } else if (row_or_node == node) {
           places.push_back(place(c, c));
         } else {
@@ -504,18 +540,21 @@ class SystemCompiler {
     for (const auto& [row, node] : t_->gathers.jacobian_ends) locate(t_->matrix.jacobian, row, node, true);
     for (const ComplianceEntry& e : s_->row_data_.compliance) {
       const Index row = t_->treated.unknown[at(e.row)], col = t_->treated.unknown[at(e.col)];
-      t_->matrix.compliance.push_back(row < 0 ? -1 : place(row, col));
+      t_->matrix.compliance.push_back(row < 0 || !owns_row(e.row) ? -1 : place(row, col));
     }
     for (FilledRows* rows : {&t_->treated.condensed, &t_->treated.augmented}) {
       for_filled_blocks(*rows, [&](Index i, Index j) {
         for (Index c = first[at(j)]; c < first[at(j) + 1]; ++c) {
           const Index from = i == j ? c : first[at(i)];
-          rows->place.push_back(from < first[at(i) + 1] ? place(from, c) : -1);
+          rows->place.push_back(owns(i) && from < first[at(i) + 1] ? place(from, c) : -1);
         }
       });
     }
-    for (Index i = 0; i < t_->matrix.pattern.size; ++i)
-      t_->matrix.diagonal.push_back(t_->matrix.pattern.column_start[at(i)]);
+    const auto& owner = t_->matrix.pattern.owner;
+    for (Index i = 0; i < t_->matrix.pattern.size; ++i) {
+      const bool here = owner.empty() || owner[at(i)] == shares()->rank();
+      t_->matrix.diagonal.push_back(here ? t_->matrix.pattern.column_start[at(i)] : -1);
+    }
   }
 
   // The unknowns of a node share a group; a local row joins the node that most of its stencils have in
@@ -591,6 +630,13 @@ double System::evaluate_law(const LawPlace& place, double t0, double t1, std::sp
   const LawRows& law = *parts_.row_pools[at(place.row_pool)]->facets().law;
   return law.evaluate_law({t0, t1, row_memory(place.row_pool, memory)}, lambda.subspan(first, rows), strain,
                           tangent);
+}
+
+const StencilRun* PoolPlaces::run_of(Index pool, Index stencil) const {
+  const auto& of_pool = runs[at(pool)];
+  const auto next = std::upper_bound(of_pool.begin(), of_pool.end(), stencil,
+                                     [](Index s, const StencilRun& run) { return s < run.begin; });
+  return next == of_pool.begin() || stencil >= std::prev(next)->end ? nullptr : &*std::prev(next);
 }
 
 void System::start_memory(std::span<double> memory) const {

@@ -8,11 +8,13 @@
 //     TreatedRows    which rows the linear systems keep, condense, border or leave to a dual iteration
 //     MatrixPlaces   the pattern of the saddle-point matrix, and where everything goes in it
 //     PoolPlaces     where pools have their slots
+//     Shares         who has what, where several processes solve it together
 //   RowData        compliant rows: metric, measure, bounds, compliance, laws
 //   SystemFacets   what few pools are, and what pools keep between steps
 #pragma once
 
 #include "engine/solvers/linear_solver.h"
+#include "engine/system/shares.h"
 #include "engine/system/system_facets.h"
 
 namespace isochor {
@@ -30,6 +32,8 @@ struct SystemParts {
   // How rows are treated whose pools leave it to us; where it does not fit, the closest that does.
   RowTreatment treatment = RowTreatment::automatic;
   bool border_wide_rows = true;  // rather than dual, where `treatment` is dual
+  // Processes that it is shared out over; null: this one alone.
+  std::shared_ptr<const Ranks> ranks;
   // Of a system whose stencils are renewed: made with the first one, for those that replace it.
   std::shared_ptr<OrderingBase> ordering_base;
 };
@@ -135,7 +139,7 @@ struct MatrixPlaces {
   // columns and for rows that are not kept.
   std::vector<std::int64_t> block, jacobian;
   std::vector<std::int64_t> compliance;  // one an entry of RowData::compliance, -1 for rows that are not kept
-  std::vector<std::int64_t> diagonal;    // of each unknown
+  std::vector<std::int64_t> diagonal;    // of each unknown, -1 for those of other ranks
 };
 
 // Where a pool's slots begin in the arrays over all pools.
@@ -144,9 +148,23 @@ struct PoolPlace {
   std::int64_t function = 0, gradient = 0, jacobian = 0, hessian = 0;
 };
 
+// Stencils [begin, end) of a pool that are evaluated here; runs of a pool ascend. Without ranks a pool is one
+// run. Energies and functions have a place for every stencil; vectors and blocks for those that are
+// evaluated, and the slots of stencil s begin at gradient + nodes().offset[s], jacobian + functions *
+// offset[s] and hessian + hessian_offset()[s]: shifts, which may be negative.
+struct StencilRun {
+  Index begin = 0, end = 0;
+  bool own = true;  // this rank answers for their energies and functions
+  std::int64_t gradient = 0, jacobian = 0, hessian = 0;
+};
+
 struct PoolPlaces {
   std::vector<PoolPlace> slots;  // of each stencil pool
   PoolPlace total;
+  std::vector<std::vector<StencilRun>> runs;  // of each stencil pool
+
+  // The run of a stencil; null where others evaluate it.
+  const StencilRun* run_of(Index pool, Index stencil) const;
 };
 
 struct SystemTables {
@@ -155,7 +173,8 @@ struct SystemTables {
   TreatedRows treated;
   MatrixPlaces matrix;
   PoolPlaces pools;
-  std::uint64_t layout = 0;  // a number for all of it
+  std::unique_ptr<Shares> shares;  // null: this process has all
+  std::uint64_t layout = 0;        // a number for all of it
 };
 
 class System {
@@ -172,6 +191,8 @@ class System {
   const MatrixPlaces& matrix() const { return tables_->matrix; }
   const PoolPlaces& pools() const { return tables_->pools; }
   const SystemFacets& facets() const { return facets_; }
+  // Null: this process has all.
+  const Shares* shares() const { return tables_->shares.get(); }
   std::size_t table_bytes() const;
   bool shares_tables(const System& other) const { return tables_ == other.tables_; }
 

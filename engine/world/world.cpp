@@ -71,7 +71,17 @@ Result<World> World::create(WorldOptions options, Host host, std::uint64_t abi) 
   if (!std::isfinite(g.x) || !std::isfinite(g.y) || !std::isfinite(g.z)) {
     return Error{"world: gravity must be finite numbers"};
   }
-  if (options.solver != Solver::automatic && !make_linear_solver(options.solver)) {
+  const auto has_solver = [&] {
+    return host.ranks ? host.ranks->linear_solver(options.solver, false) != nullptr
+                      : make_linear_solver(options.solver) != nullptr;
+  };
+  if (host.ranks && !has_solver()) {
+    return Error{
+        "world: the linear solver asked for does not work across ranks; use automatic, mumps or iterative, "
+        "or "
+        "run on one process"};
+  }
+  if (options.solver != Solver::automatic && !has_solver()) {
     return Error{
         "world: the linear solver asked for is not part of this build; `isochor version` lists those that "
         "are"};
@@ -82,7 +92,7 @@ Result<World> World::create(WorldOptions options, Host host, std::uint64_t abi) 
     parallel = std::make_unique<HostParallel>(std::move(host.threads));
   else
     parallel = std::make_unique<TbbParallel>(options.threads);
-  return World(std::make_unique<Impl>(std::move(options), std::move(parallel)));
+  return World(std::make_unique<Impl>(std::move(options), std::move(parallel), std::move(host.ranks)));
 } catch (const std::bad_alloc&) {
   return no_memory("create");
 }

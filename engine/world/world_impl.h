@@ -25,13 +25,14 @@ struct LeftViews {
 };
 
 struct World::Impl {
-  Impl(WorldOptions given, std::unique_ptr<Parallel> threads)
+  Impl(WorldOptions given, std::unique_ptr<Parallel> threads, std::shared_ptr<const Ranks> ranks = {})
       : options(std::move(given)),
         parallel(std::move(threads)),
         amounts(instances, Gravity(options.gravity, options.gravity_curve)),
-        methods(options, *parallel) {
+        methods(options, *parallel, ranks) {
     said.builder.set_world(WorldNumbers::next_world());
-    methods.set_interrupt([this] { return interrupt.raised(); });
+    // Ranks that were stopped at different places would wait for each other: they end a step together.
+    if (!ranks) methods.set_interrupt([this] { return interrupt.raised(); });
   }
   ~Impl() { leave_views(nullptr); }
 

@@ -1,4 +1,4 @@
-// What a host may lend to a world: its threads and its log.
+// What a host may lend to a world: its threads, its log, and other processes.
 #pragma once
 
 #include <functional>
@@ -6,6 +6,7 @@
 #include <string>
 
 #include "isochor/export.h"
+#include "isochor/ranks.h"
 #include "isochor/types.h"
 
 namespace isochor {
@@ -23,6 +24,7 @@ class ISOCHOR_API ThreadPool {
 struct Host {
   std::shared_ptr<ThreadPool> threads;          // empty: the engine's own, WorldOptions::threads of them
   std::function<void(const std::string&)> log;  // empty: WorldOptions::log
+  std::shared_ptr<const Ranks> ranks;           // empty: this process alone
 };
 
 }  // namespace isochor

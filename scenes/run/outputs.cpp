@@ -190,6 +190,12 @@ Result<RunOutputs> RunOutputs::open(const std::string& folder, const SceneDef& s
   return RunOutputs(folder, scene);
 }
 
+RunOutputs RunOutputs::silent(const SceneDef& scene) {
+  RunOutputs outputs("", scene);
+  outputs.silent_ = true;
+  return outputs;
+}
+
 Result<std::optional<RunCheckpoint>> RunOutputs::checkpoint_in(const std::string& folder) {
   const fs::path path = fs::path(folder) / kCheckpoint;
   std::error_code code;
@@ -232,6 +238,7 @@ Result<RunOutputs> RunOutputs::reopen(const std::string& folder, const RunView& 
 }
 
 Result<void> RunOutputs::keep(const RunCheckpoint& checkpoint) {
+  if (silent_) return {};
   return write_checkpoint((fs::path(folder_) / kCheckpoint).string(), checkpoint);
 }
 
@@ -295,6 +302,10 @@ Result<void> RunOutputs::record(const RunView& view, bool last) {
   const bool due = every > 0 && (frame_due(view.scene, step) || last) && step != last_frame_;
   if (due) {
     last_frame_ = step;
+    if (silent_) {
+      for (const BodyId body : view.built.bodies) view.built.world.fields(body);
+      return {};
+    }
     if (!page_ && view.scene.outputs.page) page_ = RunPage::start(view);
     std::vector<BodyFields> fields;
     for (std::size_t b = 0; b < view.built.bodies.size(); ++b) {
@@ -309,11 +320,13 @@ Result<void> RunOutputs::record(const RunView& view, bool last) {
       }
     }
   }
+  if (silent_) return {};
   if (auto r = append_row(view); !r) return r;
   return write_summary(view);
 }
 
 Result<void> RunOutputs::finish(const RunView& view) {
+  if (silent_) return {};
   // The page is a view of the run; where it cannot show that, the numbers still stand.
   if (page_ && !page_->failure().empty()) {
     view.result.warnings.push_back("no results page: " + page_->failure());
@@ -332,7 +345,7 @@ Result<void> RunOutputs::finish(const RunView& view) {
 }
 
 void RunOutputs::tell_failure(const RunView& view) {
-  if (write_summary(view)) return;
+  if (silent_ || write_summary(view)) return;
   // Where there is no room for another file, the one that is there has some.
   const std::string path = (fs::path(folder_) / "summary.json").string();
   std::error_code code;

@@ -22,6 +22,9 @@ class RunOutputs {
  public:
   // Makes the folder and removes what an earlier run of the scene left in it.
   static Result<RunOutputs> open(const std::string& folder, const SceneDef& scene);
+  // Of a process that runs the scene with others and does not write: it only asks the world for what goes
+  // into files, since ranks answer together.
+  static RunOutputs silent(const SceneDef& scene);
   RunOutputs(RunOutputs&&) noexcept;
   RunOutputs& operator=(RunOutputs&&) noexcept;
   ~RunOutputs();
@@ -55,6 +58,7 @@ class RunOutputs {
   std::size_t rows_ = 0;  // records in the table
   int last_frame_ = -1;
   bool keeps_ = false;  // checkpoints
+  bool silent_ = false;
   std::unique_ptr<RunPage> page_;
   PageJournal journal_;
 };

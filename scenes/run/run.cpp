@@ -26,6 +26,18 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+// Whether it is so on any of the ranks that run together, which must all decide alike.
+bool on_any(const RunOptions& options, bool here) {
+  if (!options.ranks) return here;
+  double count = here ? 1 : 0;
+  options.ranks->sum({&count, 1});
+  return count > 0;
+}
+
+bool is_silent(const RunOptions& options) {
+  return options.ranks && options.ranks->rank() != 0;
+}
+
 // One run from a built world to its last record.
 class Run {
  public:
@@ -54,7 +66,10 @@ class Run {
   void record(int step, const StepReport& report);
   // True when the step ended the run.
   bool stopped(const StepReport& report);
-  bool out_of_time() const { return options_.budget && seconds_since(start_) > *options_.budget; }
+  bool out_of_time() const {
+    return options_.budget && on_any(options_, seconds_since(start_) > *options_.budget);
+  }
+  bool stop_asked() const { return on_any(options_, options_.stop && options_.stop()); }
   bool write(RunOutputs* outputs, bool last);
   void warn(const std::string& text);
   void warn_of_ends();
@@ -133,7 +148,7 @@ bool Run::keep(RunOutputs* outputs) {
   while (complete_.records.back().step > complete_.step) complete_.records.pop_back();
   auto r = outputs->keep(complete_);
   complete_.records.clear();
-  if (!r) return not_written(r.error());
+  if (on_any(options_, !r)) return not_written(r ? "rank 0 could not" : r.error());
   kept_step_ = complete_.step;
   kept_at_ = Clock::now();
   return true;
@@ -142,7 +157,8 @@ bool Run::keep(RunOutputs* outputs) {
 bool Run::keep_if_due(RunOutputs* outputs) {
   const OutputDef& o = scene_.outputs;
   const bool by_steps = o.checkpoint_steps > 0 && complete_.step % o.checkpoint_steps == 0;
-  const bool by_time = o.checkpoint_seconds > 0 && seconds_since(kept_at_) >= o.checkpoint_seconds;
+  const bool by_time =
+      o.checkpoint_seconds > 0 && on_any(options_, seconds_since(kept_at_) >= o.checkpoint_seconds);
   return (!by_steps && !by_time) || keep(outputs);
 }
 
@@ -203,14 +219,16 @@ bool Run::stopped(const StepReport& report) {
 bool Run::write(RunOutputs* outputs, bool last) {
   if (!outputs) return true;
   auto r = outputs->record({scene_, built_, result_}, last);
-  return r || not_written(r.error());
+  return !on_any(options_, !r) || not_written(r ? "rank 0 could not" : r.error());
 }
 
 void Run::march(RunOutputs* outputs) {
   const StepPlan plan = plan_steps(scene_.analysis);
   result_.steps_asked = plan.steps;
   World& world = built_.world;
-  world.stop_when([this] { return (options_.stop && options_.stop()) || out_of_time(); });
+  // Ranks look up together, between steps.
+  if (!options_.ranks)
+    world.stop_when([this] { return (options_.stop && options_.stop()) || out_of_time(); });
   // Until the last step the summary says what is true: the run is not finished.
   result_.status = RunStatus::interrupted;
   result_.reason = "the run has not ended yet";
@@ -224,13 +242,13 @@ void Run::march(RunOutputs* outputs) {
   for (int step = result_.records.back().step + 1; step <= plan.steps; ++step) {
     const double before = world.time();
     // A stop between steps must not wait for the next iteration.
-    interrupted_ = options_.stop && options_.stop();
+    interrupted_ = stop_asked();
     StepReport report;
     report.status = StepStatus::cancelled;
     const auto& path_step = scene_.analysis.path_step;
     if (!interrupted_ && !out_of_time())
       report = path_step ? world.follow(*path_step) : world.advance(plan.h);
-    interrupted_ = interrupted_ || (options_.stop && options_.stop());
+    interrupted_ = interrupted_ || stop_asked();
     const bool over = stopped(report);
     const bool last = step == plan.steps || (path_step && world.time() >= scene_.analysis.duration);
     if (!over || world.time() != before) {
@@ -292,10 +310,11 @@ std::optional<RunOutputs> open_outputs(const SceneDef& scene, const RunOptions& 
       return {};
     }
   }
-  auto outputs = checkpoint ? RunOutputs::reopen(options.folder, {scene, built, result}, *checkpoint)
-                            : RunOutputs::open(options.folder, scene);
-  if (outputs) return std::move(outputs).value();
-  result.reason = outputs.error();
+  auto outputs = is_silent(options) ? Result<RunOutputs>(RunOutputs::silent(scene))
+                 : checkpoint       ? RunOutputs::reopen(options.folder, {scene, built, result}, *checkpoint)
+                                    : RunOutputs::open(options.folder, scene);
+  if (!on_any(options, !outputs)) return std::move(outputs).value();
+  result.reason = outputs ? "rank 0 cannot write the outputs" : outputs.error();
   return {};
 }
 
@@ -354,15 +373,21 @@ void run_into(const SceneDef& scene, const RunOptions& options, RunResult& resul
     return;
   }
   std::optional<RunCheckpoint> checkpoint;
-  if (options.resume && !find_checkpoint(scene, options, checkpoint, result)) return;
+  if (options.resume && on_any(options, !find_checkpoint(scene, options, checkpoint, result))) {
+    if (result.reason.empty()) result.reason = "another rank cannot read the checkpoint";
+    return;
+  }
   if (checkpoint && checkpoint->ended) {
     result.status = RunStatus::converged;
     result.ended_before = true;
     return;
   }
-  auto built = build(scene, {options.threads});
-  if (!built) {
-    result.reason = built.error();
+  BuildOptions building;
+  building.threads = options.threads;
+  building.ranks = options.ranks;
+  auto built = build(scene, building);
+  if (on_any(options, !built)) {
+    result.reason = built ? "another rank could not build the scene" : built.error();
     return;
   }
   Run run(scene, options, built.value(), result, start);
@@ -375,12 +400,14 @@ void run_into(const SceneDef& scene, const RunOptions& options, RunResult& resul
   try {
     run.march(outputs ? &*outputs : nullptr);
   } catch (const std::bad_alloc&) {
+    if (options.ranks) throw;  // the others wait
     out_of_memory(solving(result), result);
   }
   result.metrics = evaluate_metrics(scene, result.records);
   const RunView view{scene, built.value(), result};
   if (outputs && result.status != RunStatus::not_written) {
-    if (auto r = outputs->finish(view); !r) run.not_written(r.error());
+    auto r = outputs->finish(view);
+    if (on_any(options, !r)) run.not_written(r ? "rank 0 could not" : r.error());
   }
   if (outputs && result.status == RunStatus::not_written) outputs->tell_failure(view);
 }
@@ -392,6 +419,7 @@ RunResult run_scene(const SceneDef& scene, const RunOptions& options) {
   try {
     run_into(scene, options, result);
   } catch (const std::bad_alloc&) {
+    if (options.ranks) throw;
     if (result.status != RunStatus::out_of_memory)
       out_of_memory("reading meshes and building the world", result);
   }

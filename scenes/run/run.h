@@ -85,6 +85,9 @@ struct RunOptions {
   bool resume = false;
   bool origins = false;        // RunResult::origins are wanted; the run takes a factorization more
   std::function<bool()> stop;  // asked at every iteration; true interrupts
+  // Processes that run it together (Host::ranks), each with these options. Rank 0 writes the outputs; a stop
+  // or the end of the budget on any of them ends all, between steps.
+  std::shared_ptr<const Ranks> ranks;
   std::function<void(const StepRecord&, int steps)> on_step;
   std::function<void(const std::string&)> log;  // warnings
 };

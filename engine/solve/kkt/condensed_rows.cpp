@@ -28,6 +28,8 @@ void CondensedRows::reduce(std::span<const double> row_rhs, std::span<double> rh
     part_[k] = row_rhs[at(rows[k])] / compliance_[k];
     jacobian_.add_force(rows[k], part_[k], rhs);
   }
+  // A rank has all rows of its own nodes.
+  if (system_.shares() && !rows.empty()) system_.shares()->gather_unknowns(rhs);
 }
 
 void CondensedRows::recover(std::span<const double> row_rhs, std::span<const double> solution,
@@ -39,6 +41,7 @@ void CondensedRows::recover(std::span<const double> row_rhs, std::span<const dou
     dlambda[r] = held(k) ? -row_rhs[r] / system_.row_metric()[r]
                          : jacobian_.dot(rows[k], solution) / compliance_[k] - part_[k];
   }
+  if (system_.shares() && !rows.empty()) system_.shares()->gather_rows(dlambda);
 }
 
 }  // namespace isochor

@@ -108,6 +108,7 @@ void FactoredMatrix::times(std::span<const double> u, std::span<double> w) const
     }
     w[at(c)] += sum;
   }
+  if (system_.shares()) system_.shares()->sum(w);
 }
 
 }  // namespace isochor

@@ -40,8 +40,10 @@ void KeptRows::add_trace(double trace, std::span<double> matrix, std::span<doubl
       if (pattern.row[k] >= first) work[at(pattern.row[k])] += matrix[k] * matrix[k];
     }
   }
+  if (system_.shares()) system_.shares()->sum(work);
   for (Index u = first; u < pattern.size; ++u) {
-    matrix[static_cast<std::size_t>(system_.matrix().diagonal[at(u)])] -= trace * work[at(u)];
+    const std::int64_t place = system_.matrix().diagonal[at(u)];
+    if (place >= 0) matrix[static_cast<std::size_t>(place)] -= trace * work[at(u)];
   }
 }
 

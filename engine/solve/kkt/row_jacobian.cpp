@@ -22,7 +22,7 @@ std::size_t RowJacobian::add_square(Index row, double weight, std::span<const st
     for (std::size_t b = begin; b <= a; ++b) {
       const Index j = gathers.jacobian_ends[b][1], kj = nodes.of(j);
       for (Index q = 0; q < kj; ++q, ++place) {
-        if (ki == 0) continue;
+        if (places[place] < 0) continue;
         auto to = static_cast<std::size_t>(places[place]);
         const double factor = vector_[b][q] * weight;
         for (Index p = i == j ? q : 0; p < ki; ++p) matrix[to++] += vector_[a][p] * factor;

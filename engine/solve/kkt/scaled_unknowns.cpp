@@ -10,7 +10,9 @@ ScaledUnknowns::ScaledUnknowns(const System& system) : system_(system), scale_(a
 void ScaledUnknowns::choose(const MatrixValues& values, std::span<double> matrix) {
   const NodeUnknowns& nodes = system_.unknowns();
   const auto& diagonal = system_.matrix().diagonal;
+  const Shares* const shares = system_.shares();
   for (Index i = 0; i < system_.nodes(); ++i) {
+    if (shares && !shares->owns(i)) continue;
     double k = 0;
     for (Index c = nodes.begin(i); c < nodes.end(i); ++c) {
       k = std::max(k, std::abs(matrix[static_cast<std::size_t>(diagonal[at(c)])]));
@@ -21,6 +23,7 @@ void ScaledUnknowns::choose(const MatrixValues& values, std::span<double> matrix
       matrix[static_cast<std::size_t>(diagonal[at(c)])] += values.shift * reference;
     }
   }
+  if (shares) shares->gather_unknowns(scale_);
   const TreatedRows& rows = system_.treated();
   for (const Index r : rows.kept)
     scale_[at(rows.unknown[at(r)])] = 1 / std::sqrt(system_.row_metric()[at(r)]);
@@ -28,9 +31,12 @@ void ScaledUnknowns::choose(const MatrixValues& values, std::span<double> matrix
 
 void ScaledUnknowns::choose_again(std::span<const double> matrix) {
   for (Index c = 0; c < system_.free_unknowns(); ++c) {
-    const double d = std::abs(matrix[static_cast<std::size_t>(system_.matrix().diagonal[at(c)])]);
+    const std::int64_t place = system_.matrix().diagonal[at(c)];
+    if (place < 0) continue;
+    const double d = std::abs(matrix[static_cast<std::size_t>(place)]);
     scale_[at(c)] = std::min(scale_[at(c)], d > 0 ? 1 / std::sqrt(d) : 1);
   }
+  if (system_.shares()) system_.shares()->gather_unknowns(scale_);
 }
 
 void ScaledUnknowns::apply(const Parallel& parallel, std::span<double> matrix) const {

@@ -58,7 +58,8 @@ void UnsymmetricPart::place_blocks() {
   std::sort(destination.begin(), destination.end());
   const auto find = [&](Index i, Index j) {
     const std::pair key(std::array{i, j}, std::size_t{0});
-    return std::lower_bound(destination.begin(), destination.end(), key)->second;
+    const auto found = std::lower_bound(destination.begin(), destination.end(), key);
+    return found != destination.end() && found->first == key.first ? found->second : ends.size();
   };
   for (const PoolSlots& slots : pools_) {
     const StencilPool& pool = *system_->parts().stencil_pools[at(slots.pool)];
@@ -71,7 +72,8 @@ void UnsymmetricPart::place_blocks() {
           // The lower triangle names the larger node first; a node that is there twice meets itself both
           // ways.
           if (nodes[a] < nodes[b]) continue;
-          block_source_.push_back({find(nodes[a], nodes[b]), first + a * n + b, first + b * n + a});
+          block_source_.push_back(
+              {find(nodes[a], nodes[b]), first + a * n + b, first + b * n + a, nodes[a], nodes[b]});
         }
       }
     }
@@ -193,7 +195,7 @@ void UnsymmetricPart::add_times(std::span<const Vec3> dx, std::span<const double
                                 std::span<Vec3> y) const {
   const System& s = *system_;
   for (const BlockSource& source : block_source_) {
-    const auto [i, j] = s.gathers().block_ends[source.block];
+    const Index i = source.row, j = source.col;
     y[at(i)] += block_[source.lower] * dx[at(j)];
     if (i != j) y[at(j)] += block_[source.upper] * dx[at(i)];
   }

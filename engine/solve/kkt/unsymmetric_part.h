@@ -33,9 +33,11 @@ class UnsymmetricPart {
     std::size_t first_block = 0, first_column = 0;
     std::vector<std::int64_t> block_offset;
   };
-  // Contributions to a block of Gathers::block_ends, and to its mirror image.
+  // Contributions to a block of Gathers::block_ends, and to its mirror image; `block` is beyond their end
+  // where another rank has it.
   struct BlockSource {
     std::size_t block = 0, lower = 0, upper = 0;
+    Index row = 0, col = 0;  // its nodes
   };
   // Contributions to an entry of Gathers::jacobian_ends.
   struct ColumnSource {
