@@ -64,7 +64,7 @@ void print_trial(const Trial& t) {
     found = "within " + percent(*t.indicator) + " (" + t.held_by + ")";
   else
     found = "nothing to compare with yet";
-  std::printf("  %-40s %8d unknowns %8s  %s\n", describe(t.setting).c_str(), t.unknowns,
+  std::printf("  %-58s %8d unknowns %8s  %s\n", describe(t.setting).c_str(), t.unknowns,
               duration(t.seconds).c_str(), found.c_str());
   std::fflush(stdout);
 }

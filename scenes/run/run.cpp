@@ -264,7 +264,10 @@ void Run::march(RunOutputs* outputs) {
       result_.reason.clear();
     }
     if (over || last) warn_of_ends();
-    if (options_.origins && !over && last) result_.origins = origins_of_answers(scene_, built_, result_);
+    if (options_.origins && !over && last) {
+      result_.metrics = evaluate_metrics(scene_, result_.records);
+      result_.origins = origins_of_answers(scene_, built_, result_);
+    }
     if (!write(outputs, over || last)) return;
     if (keeping && over) keep(outputs);
     if (over || last) return;

@@ -110,3 +110,26 @@ TEST_CASE("indicators cover metrics and probes, not residuals") {
   CHECK(j["accuracy"]["upper_limit"] == false);
   CHECK(j["status"] == "converged");
 }
+
+TEST_CASE("every answer of an equilibrium says where its error comes from") {
+  const SceneDef scene = test::small_scene();
+  RunOptions options;
+  options.origins = true;
+  const RunResult r = run_scene(scene, options);
+  REQUIRE(r.status == RunStatus::converged);
+  const auto answers = answers_of(r);
+  REQUIRE(answers.size() == 2);
+  REQUIRE(r.origins.size() == answers.size());
+  for (std::size_t k = 0; k < answers.size(); ++k) {
+    CAPTURE(answers[k].name);
+    CHECK(r.origins[k].name == answers[k].name);
+    CHECK(r.origins[k].by_output);
+    CHECK_THAT(r.origins[k].where, ContainsSubstring(answers[k].name + ": three quarters of its error"));
+    double sum = 0;
+    for (const double share : r.origins[k].cells.at(0)) sum += share;
+    CHECK(sum == Approx(1));
+  }
+  CHECK(run_scene(scene, {}).state_hash == r.state_hash);
+  const Accuracy a = estimate_accuracy(scene, r);
+  for (const AccuracyEntry& e : a.entries) CHECK_FALSE(e.where.empty());
+}
