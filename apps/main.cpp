@@ -212,7 +212,8 @@ int dispatch(int argc, char** argv) {
   check->add_option("--scale", scale, "Multiplies coordinates: 1e-3 for millimeters")
       ->check(CLI::PositiveNumber);
   bool triangles = false;
-  check->add_flag("--triangles", triangles, "Its triangles are the cells, of a thin body; also of .obj and .stl");
+  check->add_flag("--triangles", triangles,
+                  "Its triangles are the cells, of a thin body; also of .obj and .stl");
   check->add_flag("--json", json, "As JSON");
   CLI::App* show = top.add_subcommand("show", "Print a scene as a scene file, a start for one of your own");
   show->add_option("scene", scene, "Name of a scene or a scene file")->required();
