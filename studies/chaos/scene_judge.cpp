@@ -475,6 +475,17 @@ std::optional<Finding> SceneJudge::balance(const BuiltScene& built) const {
   for (const EffectId id : built.ids(dirichlet_kind)) add(world.reaction(id)[0]);
   for (std::size_t b = 0; b < mass_.size(); ++b)
     add(evaluate(scene_.analysis.options.gravity_curve, t) * mass_[b] * scene_.analysis.options.gravity);
+  for (const ShellDef& s : scene_.shells) {
+    const Mesh& mesh = world.mesh(built.bodies[static_cast<std::size_t>(s.body)]);
+    double area = 0;
+    for (const std::string& surface : s.surfaces) {
+      const auto one = area_of(mesh, surface);
+      if (!one && s.density > 0) return {};
+      area += one.value_or(0);
+    }
+    add(evaluate(scene_.analysis.options.gravity_curve, t) * s.density * s.thickness * area *
+        scene_.analysis.options.gravity);
+  }
   for (const PointForceDef& f : scene_.forces) add(evaluate(f.amount, t) * f.force);
   for (const TractionDef& d : scene_.tractions) {
     const Mesh& mesh = world.mesh(built.bodies[static_cast<std::size_t>(d.body)]);
