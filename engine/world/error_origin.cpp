@@ -163,7 +163,7 @@ Result<std::vector<ErrorOrigin>> World::error_origins(std::span<const Output> ou
   return out;
 } catch (const std::bad_alloc&) {
   impl_->methods.drop();
-  return Error{out_of_memory("error_origins")};
+  return no_memory("error_origins");
 }
 
 }  // namespace isochor

@@ -274,7 +274,7 @@ Result<Gradients> World::gradients(const GradientQuery& query) try {
   return out;
 } catch (const std::bad_alloc&) {
   impl_->methods.drop();
-  return Error{out_of_memory("gradients")};
+  return no_memory("gradients");
 }
 
 }  // namespace isochor

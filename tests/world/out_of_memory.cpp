@@ -5,6 +5,7 @@
 #include <new>
 #include <optional>
 
+#include "isochor/gradients.h"
 #include "support/allocations.h"
 #include "support/worlds.h"
 
@@ -271,6 +272,38 @@ TEST_CASE("derivatives survive that memory runs out") {
     input.effect = live.load;
     return why(live.world.derivatives(std::span(&input, 1)));
   });
+}
+
+TEST_CASE("gradients and the origins of errors survive that memory runs out") {
+  for (const auto mode : {GradientQuery::Mode::adjoint, GradientQuery::Mode::tangent}) {
+    survives(starts().front(), [=](Live& live) {
+      GradientQuery query;
+      query.outputs = {Output::node(live.body, 3, {0, 0, 1})};
+      query.parameters = {Parameter::amount_of(live.load), Parameter::density(live.body)};
+      query.mode = mode;
+      return why(live.world.gradients(query));
+    });
+  }
+  survives(starts().front(), [](Live& live) {
+    return why(live.world.error_origins(std::vector<Output>{Output::elastic_energy()}));
+  });
+}
+
+// Behind the first steps the state is another, which must not be left to a host that was told there is none.
+TEST_CASE("a way through time for which memory runs out is not gone") {
+  for (const std::size_t start : {0, 2}) {
+    for (const auto mode : {GradientQuery::Mode::adjoint, GradientQuery::Mode::tangent}) {
+      survives(starts().at(start), [=](Live& live) {
+        TrajectoryQuery query;
+        query.steps = {0.02, 0.03, 0.02};
+        query.outputs = {{{{3, Output::node(live.body, 3, {0, 0, 1})}}}};
+        query.parameters = {Parameter::amount_of(live.load), Parameter::density(live.body)};
+        query.mode = mode;
+        query.kept_states = 2;
+        return why(live.world.trajectory_gradients(query));
+      });
+    }
+  }
 }
 
 TEST_CASE("a world can be built although memory runs out on the way") {

@@ -1,0 +1,115 @@
+// Gradients of what is seen on a way through time.
+//
+// Every increment solves R(z; y, p) = 0 for z = (x, lambda) where it is evaluated, from what came before,
+// y = (positions, velocities, what the scheme keeps), and goes on to y' = A y + B x: time schemes are linear
+// maps of each node (integrators/), with coefficients that follow from the scheme itself (StepMap). Inertia
+// in R is s M (x - P y). So, for an output J:
+//
+//   adjoint   backward: with y_bar' = dJ/dy' of what comes after and of outputs there, solve
+//             A(z) a = (B^T y_bar', dJ/dlambda); then dJ/dp -= a . dR/dp and
+//             y_bar = A^T y_bar' + P^T (s M a)
+//   tangent   forward: solve A(z) dz = -dR/dp + s M P dy; then dy' = A dy + B dx
+//
+// Damping depends on where the increment began as well; its potential is the same when both ends change
+// places, so that what it adds to either way follows from its forces (DissipativeStencils).
+//
+// Each increment is linearized where it was solved, by its own matrix, as World::gradients() does (the
+// outline stands there). States of the way are kept, or made again from those that are
+// (TrajectoryQuery::kept_states).
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "engine/world/gradient_parts.h"
+#include "engine/world/step_map.h"
+
+namespace isochor {
+
+// What an increment begins with, or how an output depends on it: positions, velocities and the lists that the
+// scheme keeps, one vector a node each.
+using Lists3 = std::vector<std::vector<Vec3>>;
+
+class World::Impl::Trajectory {
+ public:
+  Trajectory(World& world, const TrajectoryQuery& query) : world_(world), w_(*world.impl_), query_(query) {}
+
+  Result<void> check();
+  Result<void> go();
+  Result<Gradients> gradients();
+  // To the end of the way, or back to where it began. Takes no memory.
+  void leave(bool at_end) noexcept;
+
+ private:
+  // All that steps change.
+  struct Moment {
+    State state;
+    std::vector<double> amounts;
+  };
+  // An increment that was made, looked at where it was evaluated.
+  struct Increment {
+    StepMap map;
+    Inertia inertia;
+  };
+  // The same with its factors; what outputs have at its end, and how parameters change its equations.
+  struct Linearized {
+    Index step;
+    const Increment& increment;
+    Equilibrium& eq;
+    std::span<OutputSeed> seeds;
+    std::span<const Equations> change;
+  };
+  Index steps() const { return static_cast<Index>(query_.steps.size()); }
+  bool dissipates() const { return !w_.system().facets().dissipative.empty(); }
+  bool ends_there() const { return w_.options.scheme->evaluated_at() == 1; }
+  Result<void> check_parameters() const;
+  Result<void> check_outputs() const;
+  Result<void> check_pools();
+  std::vector<Vec3> gradient_of(Index pool, const StencilIncrement& increment, std::span<const Vec3> x) const;
+  std::vector<Vec3> dissipation(StencilIncrement increment, std::span<const Vec3> x,
+                                std::span<const Vec3> before) const;
+  // How forces of dissipation change along a direction of the beginning of an increment, and the transpose.
+  std::vector<Vec3> dissipation_along(const Increment& increment, std::span<const Vec3> way) const;
+  std::vector<Vec3> dissipation_back(const Increment& increment, std::span<const Vec3> way) const;
+  Moment now() const;
+  void restore(Moment moment) noexcept;
+  Result<void> make_step(Index n);
+  Result<void> remake(Index first);
+  void stand_at(const State& state, const State& memory_of);
+  Increment stand_in(Index n);
+  Result<std::vector<OutputSeed>> seeds_at(Equilibrium& eq, Index n, Gradients& out);
+  std::vector<GaugeName> gauges_of(Index n) const;
+  // Linearizes increment n and hands it on.
+  template <class Visit>
+  Result<void> in_increment(Index n, Gradients& out, Visit&& visit);
+  Result<void> by_adjoint(Gradients& out);
+  Result<void> by_tangent(Gradients& out);
+  // What an increment adds to the gradients by the adjoint of output j.
+  Result<void> gather(const Linearized& here, std::size_t j, const Adjoint& adjoint, Gradients& out) const;
+  Result<std::vector<Equations>> changes(Equilibrium& eq) const;
+  std::vector<Vec3> in_scene(const Parameter& p) const;
+  std::vector<Vec3> heavy(double factor, std::span<const Vec3> v) const;
+  // Rows that are about to touch or to let go, where an increment was evaluated.
+  void look_for_edges(Index n, Gradients& out) const;
+  // Visits increments from the last to the first, or the other way.
+  enum class Way : std::uint8_t { forward, backward };
+  Result<void> each(Way way, const std::function<Result<void>(Index)>& visit);
+  Index spacing() const;
+
+  World& world_;
+  Impl& w_;
+  const TrajectoryQuery& query_;
+  std::optional<Moment> start_, end_;
+  std::vector<Moment> kept_;  // at every spacing() steps, but the first
+  std::vector<State> part_;   // states from part_first_ on
+  Index part_first_ = 0;
+  std::size_t lists_ = 2;
+};
+
+// What the query is refused with; and, as its own, what World::gradients() says about a step or an entry of a
+// list.
+Error trajectory_error(const std::string& text);
+Error in_step(Index n, const Error& error);
+Error in_list(const char* list, std::size_t k, const Error& error);
+
+}  // namespace isochor
