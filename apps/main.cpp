@@ -1,5 +1,6 @@
 // isochor: list, run, live, view, check and show scenes, and studies, from the command line.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -22,6 +23,24 @@ constexpr const char* kRunFooter =
     "interrupted.\n"
     "Example: isochor run finger --set cavities.chamber.amount=20000 --set bodies[0].element=tet10";
 
+// CLI11 has checks of its own, whose messages print the largest number there is in 309 digits.
+CLI::Validator number_that(bool (*fits)(double), const std::string& wanted) {
+  return CLI::Validator(
+      [fits, wanted](std::string& text) {
+        double value = 0;
+        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) && fits(value))
+          return std::string();
+        return "\"" + text + "\" does not do; give " + wanted;
+      },
+      "");
+}
+CLI::Validator positive() {
+  return number_that([](double v) { return v > 0; }, "a positive number");
+}
+CLI::Validator not_negative() {
+  return number_that([](double v) { return v >= 0; }, "0 or a positive number");
+}
+
 void add_run(CLI::App& top, app::RunArguments& a) {
   CLI::App* c = top.add_subcommand("run", "Run a scene of the library or a scene file");
   c->add_option("scene", a.scene, "Name of a scene (see `isochor list`) or a file that ends in .json")
@@ -35,11 +54,11 @@ void add_run(CLI::App& top, app::RunArguments& a) {
   c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
   c->add_option("--budget", a.budget, "Stop after this much wall time")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   c->add_flag("--resume", a.resume, "Go on from the last checkpoint in the folder of outputs");
   c->add_option("--checkpoint", a.checkpoint, "Wall time between checkpoints; default 60, 0: none")
       ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   c->add_flag("--quiet", a.quiet, "Print errors only");
   c->add_flag("--json", a.json, "Print the summary as JSON instead of tables");
   c->add_flag("--explain", a.explain, "Say which effects are on, why, and their share of time and memory");
@@ -75,7 +94,7 @@ void add_study(CLI::App& top, app::StudyArguments& a) {
       ->capture_default_str();
   c->add_option("--limit", a.limit, "chaos: processor time after which a seed counts as hanging")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   c->add_option("--jobs", a.jobs, "chaos: seeds at a time")->check(CLI::Range(1, 256));
   c->add_flag("--keep", a.keep, "chaos: keep the scenes of all seeds, not only of broken ones");
   c->add_flag("--untimed", a.untimed,
@@ -128,7 +147,7 @@ void add_drive(CLI::App& top, app::DriveArguments& a) {
       ->allow_extra_args(false);
   c->add_option("--tolerance", a.tolerance, "Distance within which a target is reached; default 1e-6")
       ->type_name("METERS")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   c->add_option("--out", a.folder, "Folder of the outputs; default out/drive/NAME")->type_name("DIR");
   c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
   c->add_flag("--json", a.json, "Print drive.json");
@@ -166,7 +185,7 @@ void add_live(CLI::App& top, app::LiveArguments& a) {
   c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
   c->add_option("--step-limit", a.step_limit, "Wall time after which a step is given up")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   c->add_option("--out", a.folder, "Folder of recordings; default out/live_NAME")->type_name("DIR");
   c->add_flag("--dynamic", a.dynamic,
@@ -209,8 +228,7 @@ int dispatch(int argc, char** argv) {
   CLI::App* check =
       top.add_subcommand("check", "Check mesh files: counts and findings; exit 2 if one is not usable");
   check->add_option("mesh", meshes, "Mesh files (.msh, .vtk, .vtu, .node/.ele, .mesh)")->required();
-  check->add_option("--scale", scale, "Multiplies coordinates: 1e-3 for millimeters")
-      ->check(CLI::PositiveNumber);
+  check->add_option("--scale", scale, "Multiplies coordinates: 1e-3 for millimeters")->check(positive());
   bool triangles = false;
   check->add_flag("--triangles", triangles,
                   "Its triangles are the cells, of a thin body; also of .obj and .stl");

@@ -117,6 +117,21 @@ TEST_CASE("wrong arguments are bad input") {
   CHECK_FALSE(fs::exists(shell.folder() / "out"));
 }
 
+TEST_CASE("numbers of options that have no meaning are refused in a line") {
+  Shell shell;
+  for (const char* option : {"run finger --budget", "run finger --checkpoint", "study chaos --limit",
+                             "drive x.json --tolerance", "live finger --step-limit", "check x.msh --scale"}) {
+    const std::string name = std::string(option).substr(std::string(option).find("--"));
+    for (const char* value : {"-1", "nan", "inf", "1e999", "much"}) {
+      const Outcome o = shell.run(std::string(option) + " " + value);
+      INFO(option << " " << value << ": " << o.err << o.out);
+      CHECK(o.code == 2);
+      CHECK_THAT(o.err + o.out, Contains(name) && Contains(value));
+      CHECK((o.err + o.out).size() < 200);
+    }
+  }
+}
+
 TEST_CASE("a run explains what it was made of") {
   Shell shell;
   shell.write("block.json", kBlock);
