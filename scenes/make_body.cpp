@@ -61,25 +61,34 @@ Error not_for_lattices(const std::string& what) {
 }
 
 // Nodes that a cell of the place has one of; all where nothing says where they are.
-Result<std::vector<std::uint8_t>> nodes_of(const RefinedPlace& place, const Mesh& mesh) {
+Result<std::vector<std::uint8_t>> nodes_of(const RefinedPlace& place, const std::string& who,
+                                           const Mesh& mesh) {
   std::vector<std::uint8_t> in(mesh.nodes.size(), 1);
+  const auto keep = [&](MeshSelection selection) -> Result<void> {
+    selection.name = who;
+    selection.tolerance = place.tolerance;
+    const auto nodes = select_nodes(mesh, selection);
+    if (!nodes) {
+      // The selection is the place itself.
+      const std::string name = "selection \"" + who + "\"";
+      const std::string& text = nodes.error();
+      return Error{who + (text.starts_with(name) ? text.substr(name.size()) : ": " + text)};
+    }
+    std::vector<std::uint8_t> both(in.size(), 0);
+    for (const Index n : nodes.value()) both[static_cast<std::size_t>(n)] = in[static_cast<std::size_t>(n)];
+    in = std::move(both);
+    return {};
+  };
+  if (place.box || place.sphere) {
+    MeshSelection inside;
+    inside.box = place.box;
+    inside.sphere = place.sphere;
+    if (auto r = keep(std::move(inside)); !r) return r.failure();
+  }
   if (!place.surfaces.empty()) {
     MeshSelection on;
     on.of = place.surfaces;
-    const auto nodes = select_nodes(mesh, on);
-    if (!nodes) return nodes.failure();
-    std::fill(in.begin(), in.end(), std::uint8_t{0});
-    for (const Index n : nodes.value()) in[static_cast<std::size_t>(n)] = 1;
-  }
-  for (std::size_t i = 0; i < in.size(); ++i) {
-    const Vec3& x = mesh.nodes[i];
-    for (int k = 0; place.box && k < 3; ++k) {
-      if (x[k] < (*place.box)[0][k] || x[k] > (*place.box)[1][k]) in[i] = 0;
-    }
-    if (place.sphere) {
-      const Vec3 d = x - place.sphere->center;
-      if (dot(d, d) > place.sphere->radius * place.sphere->radius) in[i] = 0;
-    }
+    if (auto r = keep(std::move(on)); !r) return r.failure();
   }
   return in;
 }
@@ -98,11 +107,12 @@ Result<std::vector<std::uint8_t>> regions_of(const RefinedPlace& place, const Me
   return in;
 }
 
-Result<std::vector<Index>> cells_of(const RefinedPlace& place, const Mesh& mesh, const std::string& folder) {
-  const auto nodes = nodes_of(place, mesh);
-  if (!nodes) return Error{"surfaces: " + nodes.error()};
+Result<std::vector<Index>> cells_of(const RefinedPlace& place, const std::string& who, const Mesh& mesh,
+                                    const std::string& folder) {
+  const auto nodes = nodes_of(place, who, mesh);
+  if (!nodes) return nodes.failure();
   const auto regions = regions_of(place, mesh);
-  if (!regions) return regions.failure();
+  if (!regions) return Error{who + "." + regions.error()};
   const auto per = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
   const auto fits = [&](Index c) {
     const auto cell = static_cast<std::size_t>(c);
@@ -115,7 +125,7 @@ Result<std::vector<Index>> cells_of(const RefinedPlace& place, const Mesh& mesh,
   };
   const auto given = place.cells.given() ? read_field(place.cells, folder)
                                          : Result<std::vector<double>>(std::vector<double>{});
-  if (!given) return Error{"cells: " + given.error()};
+  if (!given) return Error{who + ".cells: " + given.error()};
   std::vector<Index> out;
   for (Index c = 0; !place.cells.given() && c < mesh.cell_count(); ++c) {
     if (fits(c)) out.push_back(c);
@@ -123,12 +133,13 @@ Result<std::vector<Index>> cells_of(const RefinedPlace& place, const Mesh& mesh,
   for (std::size_t k = 0; k < given.value().size(); ++k) {
     const double number_of = given.value()[k];
     if (!(number_of >= 0) || number_of >= mesh.cell_count() || number_of != std::floor(number_of)) {
-      return Error{"cells[" + std::to_string(k) + "] = " + number(number_of) + "; the mesh has cells 0 to " +
-                   std::to_string(mesh.cell_count() - 1) + " when they are refined"};
+      return Error{who + ".cells[" + std::to_string(k) + "] = " + number(number_of) +
+                   "; the mesh has cells 0 to " + std::to_string(mesh.cell_count() - 1) +
+                   " when they are refined"};
     }
     if (fits(static_cast<Index>(number_of))) out.push_back(static_cast<Index>(number_of));
   }
-  if (out.empty()) return Error{"cells: none of the mesh fits"};
+  if (out.empty()) return Error{who + ": no cell of the mesh fits"};
   return out;
 }
 
@@ -158,13 +169,17 @@ Result<void> refine(const SceneBody& body, const std::string& folder, Mesh& mesh
       return Error{who +
                    " says nowhere; give box, sphere, surfaces, regions or cells, or use refine for all"};
     if (lattice) return not_for_lattices(who + " is given");
+    if (where.cells.given() && where.levels != 1) {
+      return Error{who + ".levels = " + std::to_string(where.levels) +
+                   " with numbers of cells, which are those of another mesh after the first; leave it at 1"};
+    }
     if (where.levels < 1 || where.levels > kMostLevels) {
       return Error{who + ".levels = " + std::to_string(where.levels) + "; give a number from 1 to " +
                    std::to_string(kMostLevels)};
     }
     for (int level = 0; level < where.levels; ++level) {
-      const auto cells = cells_of(where, mesh, folder);
-      if (!cells) return Error{who + "." + cells.error()};
+      const auto cells = cells_of(where, who, mesh, folder);
+      if (!cells) return cells.failure();
       auto finer = refine_cells(mesh, cells.value());
       if (!finer) return Error{who + ": " + finer.error(), finer.failure().kind};
       mesh = std::move(finer.value().mesh);

@@ -125,8 +125,9 @@ struct RefinedPlace {
   std::optional<SpherePlace> sphere;       // with a node of the cell inside
   std::vector<std::string> surfaces;       // with a node of the cell on one of them
   std::vector<std::string> regions;
-  CellField cells;  // by number, in the mesh as it is when their turn comes
-  int levels = 1;   // so many times, each time all that fit
+  CellField cells;       // by number, in the mesh as it is when their turn comes
+  double tolerance = 0;  // of box, sphere and surfaces, as MeshSelection has it [m]
+  int levels = 1;        // so many times, each time all that fit
 };
 
 struct SceneBody {

@@ -82,6 +82,8 @@ void describe(Visitor& io, RefinedPlace& p) {
   io.names({"regions", "", "of the cell"}, p.regions);
   io.optional_object({"cells", "", "by number, in the mesh as it is when their turn comes"}, p.cells,
                      p.cells.given());
+  io.number(Key("tolerance", "m", "how far off nodes may be; 0: 1e-5 of the diagonal of the mesh").least(0),
+            p.tolerance, d.tolerance);
   io.integer(Key("levels", "", "so many times, each time all that fit").least(1).most(12), p.levels,
              d.levels);
 }

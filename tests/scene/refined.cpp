@@ -118,10 +118,17 @@ TEST_CASE("places without a cell are bad input") {
     return r.reason;
   };
   CHECK_THAT(refusal("[{}]"), ContainsSubstring("bodies[0].refine_where[0] says nowhere"));
-  CHECK_THAT(refusal(R"([{"box":[[5,5,5],[6,6,6]]}])"),
-             ContainsSubstring("bodies[0].refine_where[0]") && ContainsSubstring("none of the mesh fits"));
+  CHECK_THAT(refusal(R"([{"box":[[5,5,5],[6,6,6]]}])"), ContainsSubstring("bodies[0].refine_where[0]"));
+  CHECK_THAT(refusal(R"([{"box":[[1,1,1],[0,2,2]]}])"),
+             ContainsSubstring("refine_where[0]") && ContainsSubstring("lower corner first"));
+  for (const char* radius : {"0", "-1"}) {
+    CHECK_THAT(refusal((R"([{"sphere":{"center":[0,0,0],"radius":)" + std::string(radius) + "}}]").c_str()),
+               ContainsSubstring("refine_where[0]") && ContainsSubstring("positive radius"));
+  }
+  CHECK_THAT(refusal(R"([{"cells":{"values":[0]},"levels":2}])"), ContainsSubstring("levels = 2"));
   CHECK_THAT(refusal(R"([{"regions":"wall"}])"), ContainsSubstring("there is no \"wall\""));
-  CHECK_THAT(refusal(R"([{"surfaces":"top"}])"), ContainsSubstring("surfaces") && ContainsSubstring("top"));
+  CHECK_THAT(refusal(R"([{"surfaces":"top"}])"),
+             ContainsSubstring("bodies[0].refine_where[0]: the mesh has no surface named \"top\""));
   CHECK_THAT(refusal(R"([{"cells":{"values":[12]}}])"), ContainsSubstring("cells 0 to 11"));
   CHECK_THAT(refusal(R"([{"cells":{"values":[1.5]}}])"), ContainsSubstring("cells[0] = 1.5"));
   CHECK_THAT(refusal(R"([{"cells":{"file":"/nowhere"}}])"), ContainsSubstring("/nowhere"));
