@@ -57,7 +57,7 @@ World::Impl::Equilibrium::Equilibrium(Impl& world, const Inertia* its_inertia)
 Result<void> World::Impl::Equilibrium::check_balance() {
   constexpr double limit = 1e-5;
   const System& s = w.system();
-  here = equations_at(present(), w.state, gauges);
+  here = equations_at(present(), w.state, watched);
   std::vector<double> magnitude(here.force.size());
   w.assembly().residual_magnitude(magnitude);
   // Where nothing is strained, forces are rounding errors of a stiff body.
@@ -152,6 +152,15 @@ Result<void> World::Impl::Equilibrium::solve(std::span<const Vec3> load, std::sp
   return {};
 }
 
+bool names_effect(const Output& o) {
+  return o.kind == Output::Kind::gauge || o.kind == Output::Kind::reaction || o.kind == Output::Kind::force;
+}
+
+bool names_effect(const Parameter& p) {
+  return p.kind == Parameter::Kind::amount || p.kind == Parameter::Kind::constant ||
+         p.kind == Parameter::Kind::curve;
+}
+
 namespace {
 
 bool is_cells(const Parameter& p) {
@@ -185,25 +194,21 @@ Error placed(const Error& error, const char* list, std::size_t k) {
                "]: " + error.message.substr(call.size())};
 }
 
-// Effects that a query names, and gauges among its outputs.
-Result<std::vector<GaugeName>> look_up(const World& world, const GradientQuery& query) {
+// Effects that a query names.
+Result<void> check_effects(const World& world, const GradientQuery& query) {
   const auto check = [&](EffectId e, const char* list, std::size_t k) -> Result<void> {
     if (auto r = world.check(e); !r) return placed(Error{"gradients: " + r.error()}, list, k);
     return {};
   };
-  std::vector<GaugeName> gauges;
   for (std::size_t j = 0; j < query.outputs.size(); ++j) {
-    const Output& o = query.outputs[j];
-    if (o.kind != Output::Kind::gauge && o.kind != Output::Kind::reaction) continue;
-    if (auto r = check(o.effect, "outputs", j); !r) return r.failure();
-    if (o.kind == Output::Kind::gauge) gauges.push_back({static_cast<Index>(o.effect), o.quantity});
+    if (!names_effect(query.outputs[j])) continue;
+    if (auto r = check(query.outputs[j].effect, "outputs", j); !r) return r;
   }
   for (std::size_t k = 0; k < query.parameters.size(); ++k) {
-    const Parameter& p = query.parameters[k];
-    if (p.kind != Parameter::Kind::amount && p.kind != Parameter::Kind::constant) continue;
-    if (auto r = check(p.effect, "parameters", k); !r) return r.failure();
+    if (!names_effect(query.parameters[k])) continue;
+    if (auto r = check(query.parameters[k].effect, "parameters", k); !r) return r;
   }
-  return gauges;
+  return {};
 }
 
 }  // namespace
@@ -219,10 +224,11 @@ Result<Gradients> World::gradients(const GradientQuery& query) try {
         "statics() or continuation()"};
   }
   if (auto r = check_memory(w.said.builder); !r) return r.failure();
-  auto gauges = look_up(*this, query);
-  if (!gauges) return gauges.failure();
+  if (auto r = check_effects(*this, query); !r) return r.failure();
   Impl::Equilibrium eq(w);
-  eq.gauges = std::move(gauges).value();
+  for (std::size_t j = 0; j < query.outputs.size(); ++j) {
+    if (auto r = eq.watch(query.outputs[j]); !r) return placed(r.failure(), "outputs", j);
+  }
   const auto adjoint = choose_adjoint(query, w.system().has_lag());
   if (!adjoint) return adjoint.failure();
   if (auto r = eq.linearize(query.unstable); !r) return r.failure();
@@ -256,7 +262,7 @@ Result<Gradients> World::gradients(const GradientQuery& query) try {
     auto change = eq.change_by(p);
     if (!change) return placed(change.failure(), "parameters", k);
     if (!out.adjoint) {
-      Equations load(w.system(), eq.gauges.size());
+      Equations load(w.system(), eq.watched.size());
       load.add(-1, change.value());
       if (auto r = eq.solve(load.force, load.theta, eq.way_of(change.value().position)); !r)
         return r.failure();
