@@ -155,6 +155,7 @@ void World::Impl::Equilibrium::take_watched(const Watched& one, OutputSeed& seed
 void World::Impl::Equilibrium::evaluate_here() {
   const SaddleProblem p = problem();
   w.assembly().set_increment(p.increment, p.memory);
+  if (w.system().has_lag()) w.assembly().renew_lag(w.state.x, w.state.lambda, p.prescribed);
   w.assembly().evaluate(Want::gradient, Definiteness::exact, w.state.x, w.state.lambda, p.prescribed);
 }
 
@@ -219,30 +220,6 @@ void World::Impl::Equilibrium::seed_pressures(OutputSeed& seed) {
 
 // --- Forces of effects -------------------------------------------------------------------------------------
 
-namespace {
-
-// How much each function of a pool is of each row: adds what an output feels of functions' multipliers to
-// what it feels of rows'.
-void add_to_rows(const System& s, Index pool, Index first_function, std::span<const double> felt,
-                 std::span<double> multiplier) {
-  const auto& pools = s.parts().row_pools;
-  const Index end = first_function + static_cast<Index>(felt.size());
-  for (std::size_t p = 0; p < pools.size(); ++p) {
-    const RowPool& rows = *pools[p];
-    if (rows.stencil_pool != pool || rows.law != RowLaw::compliant) continue;
-    const Index first = s.first_row(static_cast<Index>(p));
-    for (Index r = 0; r < rows.rows(); ++r) {
-      for (Index i = rows.map.offset[at(r)]; i < rows.map.offset[at(r) + 1]; ++i) {
-        const Index f = rows.map.item[at(i)];
-        if (f >= first_function && f < end)
-          multiplier[at(first + r)] += rows.weight[at(i)] * felt[at(f - first_function)];
-      }
-    }
-  }
-}
-
-}  // namespace
-
 void World::Impl::Equilibrium::seed_force(const Output& o, OutputSeed& seed) {
   take_watched(watched_force(o), seed);
   evaluate_here();
@@ -278,36 +255,9 @@ void World::Impl::Equilibrium::add_pool_forces(Index p, std::span<const Vec3> al
       }
     }
   }
-  if (pool.facets().lagged) add_lagging_forces(p, along, seed, felt);
   add_to_rows(s, p, 0, felt, seed.multiplier);
-}
-
-// What follows with what the pool holds on to.
-void World::Impl::Equilibrium::add_lagging_forces(Index p, std::span<const Vec3> along, OutputSeed& seed,
-                                                  std::span<double> felt) {
-  const StencilPool& pool = *w.system().parts().stencil_pools[at(p)];
-  const auto functions = static_cast<std::size_t>(pool.functions());
-  std::vector<std::int64_t> offset{0};
-  for (Index i = 0; i < pool.stencils(); ++i) {
-    const auto n = static_cast<std::int64_t>(pool.nodes()[i].size());
-    offset.push_back(offset.back() + n * n);
-  }
-  std::vector<Mat3> block(static_cast<std::size_t>(offset.back()));
-  std::vector<Vec3> column(pool.nodes().item.size() * functions);
-  pool.facets().lagged->lag_derivatives(w.assembly().request(p, Want::hessian, w.state.x),
-                                        {offset, block, column});
-  for (Index i = 0; i < pool.stencils(); ++i) {
-    const auto nodes = pool.nodes()[i];
-    const std::size_t n = nodes.size(), first = functions * at(pool.nodes().offset[at(i)]);
-    for (std::size_t a = 0; a < n; ++a) {
-      const Vec3& d = along[at(nodes[a])];
-      for (std::size_t b = 0; b < n; ++b)
-        seed.x[at(nodes[b])] -=
-            transposed_times(block[static_cast<std::size_t>(offset[at(i)]) + a * n + b], d);
-      for (std::size_t k = 0; k < functions; ++k)
-        felt[at(i) * functions + k] -= isochor::dot(column[first + k * n + a], d);
-    }
-  }
+  // And with what the pool holds on to.
+  if (lag) lag->add_transposed(-1, along, seed.x, seed.multiplier, p);
 }
 
 // --- Stresses ----------------------------------------------------------------------------------------------

@@ -260,6 +260,7 @@ void World::Impl::Equilibrium::forces_back(std::span<const Vec3> way, std::span<
                                            std::span<double> row) {
   w.assembly().hessian_times(way, x);
   w.assembly().jacobian_times(way, row);
+  if (lag) lag->add_transposed(1, way, x, row);
   if (!inertia || !(inertia->mass_scale > 0)) return;
   std::vector<Vec3> heavy(way.size());
   w.assembly().mass_times(way, heavy);
@@ -293,8 +294,7 @@ Result<void> World::Impl::Equilibrium::seed_reaction(const Output& output, Outpu
 }
 
 Result<Adjoint> World::Impl::Equilibrium::adjoint_of(const OutputSeed& seed) {
-  const std::vector<Vec3> none(seed.x.size());
-  if (auto r = solve(seed.x, seed.multiplier, none); !r) return r.failure();
+  if (auto r = solve_transposed(seed.x, seed.multiplier); !r) return r.failure();
   Adjoint out{dx, seed.x, dlambda};
   std::vector<Vec3> force(dx.size()), pull(dx.size());
   std::vector<double> row(dlambda.size());

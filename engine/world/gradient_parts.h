@@ -6,6 +6,7 @@
 
 #include "engine/world/cell_terms.h"
 #include "engine/world/equations.h"
+#include "engine/world/lag_terms.h"
 #include "isochor/gradients.h"
 
 namespace isochor {
@@ -59,6 +60,8 @@ struct World::Impl::Equilibrium {
   // The solution of A z = (load, row) with given coordinates moved by `way`, in dx and dlambda.
   Result<void> solve(std::span<const Vec3> load, std::span<const double> row, std::span<const Vec3> way);
   Result<Adjoint> adjoint_of(const OutputSeed& seed);
+  // Of A^T z = (load, row), for symmetric matrices as solve().
+  Result<void> solve_transposed(std::span<const Vec3> load, std::span<const double> row);
 
   // gradient_parameters.cpp
   // dR/dp, all that is in Equations.
@@ -77,6 +80,7 @@ struct World::Impl::Equilibrium {
   SaddleReport report;
   Equations here;
   std::vector<Watched> watched;
+  std::optional<LagTerms> lag;  // of an unsymmetric matrix
   std::vector<Vec3> dx;
   std::vector<double> dlambda;
 
@@ -105,7 +109,6 @@ struct World::Impl::Equilibrium {
   void seed_force(const Output& output, OutputSeed& seed);
   void evaluate_here();
   void add_pool_forces(Index pool, std::span<const Vec3> along, OutputSeed& seed);
-  void add_lagging_forces(Index pool, std::span<const Vec3> along, OutputSeed& seed, std::span<double> felt);
   void add_stress_of_rows(const CellStress& cell, RecoveryInput in, double weight,
                           std::span<double> multiplier) const;
   // What a factor on the stiffness of cells changes of stresses that are watched.

@@ -405,15 +405,42 @@ TEST_CASE("the force of a contact holds what presses, and goes with it", "[gradi
   }
 }
 
-TEST_CASE("with friction there are tangents alone, and what holds on is said", "[gradients]") {
-  Pressed rough = pressed(0.001, 0.05, 0.5);
-  GradientQuery query = about(rough);
-  const Gradients g = value(rough.world.gradients(query));
-  CHECK_FALSE(g.adjoint);
-  CHECK_FALSE(g.regular);
-  CHECK_THAT(g.note, ContainsSubstring("friction"));
-  query.mode = GradientQuery::Mode::adjoint;
-  CHECK_THAT(refusal(rough.world.gradients(query)), ContainsSubstring("unsymmetric"));
+TEST_CASE("with friction the adjoint is that of an unsymmetric matrix, and what holds on is said",
+          "[gradients]") {
+  for (const double friction : {0.1, 0.5, 1.2}) {
+    CAPTURE(friction);
+    Pressed rough = pressed(0.001, 0.05, friction);
+    GradientQuery query = about(rough);
+    const auto floor = rough.world.effects().back();
+    const Index low = nearest_node(rough.world.rest_positions(rough.body), {1, 0.5, 0});
+    query.outputs.push_back(Output::node(rough.body, low, {1, 0.4, 0}));  // that rubs
+    query.outputs.push_back(Output::effect_force(floor, rough.body, {0.3, 1, 0.2}));
+    query.outputs.push_back(Output::stress(rough.body, 3, "von_mises"));
+    query.parameters.push_back(Parameter::gravity({0.2, 0, 1}));
+    query.parameters.push_back(Parameter::force_at(rough.body, {1, 1, 0.5}, {1, 0, -1}));
+    const Gradients tangent = value(rough.world.gradients(query));
+    CHECK_FALSE(tangent.adjoint);
+    CHECK_FALSE(tangent.regular);
+    CHECK_THAT(tangent.note, ContainsSubstring("friction"));
+    query.parameters.push_back(Parameter::cell_stiffness(rough.body));
+    query.mode = GradientQuery::Mode::adjoint;
+    const Gradients adjoint = value(rough.world.gradients(query));
+    CHECK(adjoint.adjoint);
+    for (std::size_t j = 0; j < query.outputs.size(); ++j) {
+      CAPTURE(j);
+      const std::vector<double> sizes{0.05, 1, 1, 10};
+      double scale = 0, sum = 0, most = 0;
+      for (std::size_t p = 0; p < sizes.size(); ++p)
+        scale = std::max(scale, std::abs(tangent.of(j, p)) * sizes[p]);
+      CHECK(scale > 0);
+      for (std::size_t p = 0; p < sizes.size(); ++p) {
+        CAPTURE(p);
+        CHECK_THAT(adjoint.of(j, p), WithinAbs(tangent.of(j, p), 1e-10 * scale / sizes[p]));
+      }
+      for (const double v : adjoint.by[j].back()) sum += v, most = std::max(most, std::abs(v));
+      CHECK_THAT(sum, WithinAbs(adjoint.of(j, 1), 1e-10 * most + 1e-9 * scale));
+    }
+  }
 }
 
 TEST_CASE("an equilibrium behind a limit point is refused unless it is meant", "[gradients]") {

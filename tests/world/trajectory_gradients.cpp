@@ -235,7 +235,7 @@ TEST_CASE("the world is at the end of the way, as after the same steps", "[gradi
   Block block = build_block(moving(0.3), kind, tight(isochor::generalized_alpha(0.8)));
   Block plain = build_block(moving(0.3), kind, tight(isochor::generalized_alpha(0.8)));
   TrajectoryQuery query = query_of(block);
-  const Gradients g = value(block.world.trajectory_gradients(query));
+  (void)value(block.world.trajectory_gradients(query));
   for (const double h : kSteps) CHECK(plain.world.step(h).status == isochor::StepStatus::converged);
   CHECK(block.world.state_hash() == plain.world.state_hash());
   CHECK(block.world.time() == plain.world.time());
@@ -243,22 +243,23 @@ TEST_CASE("the world is at the end of the way, as after the same steps", "[gradi
   // Outputs of its end are what the world says there.
   const auto cell = static_cast<Index>(block.world.mesh(block.body).cell_count() / 2);
   const isochor::Energies e = plain.world.energies();
-  const auto at_end = [&](const Output& o) {
-    Block again = build_block(moving(0.3), kind, tight(isochor::generalized_alpha(0.8)));
-    TrajectoryQuery asked;
-    asked.steps = kSteps;
-    asked.outputs = {{{{static_cast<Index>(kSteps.size()), o}}}};
-    return value(again.world.trajectory_gradients(asked)).values[0];
-  };
-  const auto same = [&](const Output& o, double wanted) {
-    CHECK(wanted != 0);
-    CHECK_THAT(at_end(o), WithinAbs(wanted, 1e-9 * std::abs(wanted)));
-  };
-  same(Output::reaction(block.clamp, {1, 0, 0}), plain.world.reaction(plain.clamp)[0].x);
-  same(Output::stress(block.body, cell, "von_mises"),
-       plain.world.fields(plain.body).cell_von_mises[static_cast<std::size_t>(cell)]);
-  same(Output::energy("kinetic"), e.kinetic);
-  same(Output::energy("total"), e.total());
+  Block again = build_block(moving(0.3), kind, tight(isochor::generalized_alpha(0.8)));
+  const auto at_end = static_cast<Index>(kSteps.size());
+  TrajectoryQuery ends;
+  ends.steps = kSteps;
+  ends.outputs = {{{{at_end, Output::reaction(again.clamp, {1, 0, 0})}}},
+                  {{{at_end, Output::stress(again.body, cell, "von_mises")}}},
+                  {{{at_end, Output::energy("kinetic")}}},
+                  {{{at_end, Output::energy("total")}}}};
+  const std::vector<double> told = value(again.world.trajectory_gradients(ends)).values;
+  const std::vector<double> wanted{
+      plain.world.reaction(plain.clamp)[0].x,
+      plain.world.fields(plain.body).cell_von_mises[static_cast<std::size_t>(cell)], e.kinetic, e.total()};
+  for (std::size_t j = 0; j < wanted.size(); ++j) {
+    CAPTURE(j);
+    CHECK(wanted[j] != 0);
+    CHECK_THAT(told[j], WithinAbs(wanted[j], 1e-9 * std::abs(wanted[j])));
+  }
 }
 
 TEST_CASE("stiffnesses of cells add up to that of the body", "[gradients]") {
@@ -271,7 +272,8 @@ TEST_CASE("stiffnesses of cells add up to that of the body", "[gradients]") {
   for (std::size_t j = 0; j < query.outputs.size(); ++j) {
     double sum = 0, size = 0;
     for (const double v : g.by[j][0]) sum += v, size += std::abs(v);
-    CHECK(size > 0);
+    // A pressure that is given stays as it is.
+    if (named_outputs(block, true, true)[j].first != "pressure") CHECK(size > 0);
     CHECK_THAT(sum, WithinAbs(g.of(j, 1), 1e-11 * size));
   }
 }
