@@ -78,8 +78,8 @@ static void make_in(scene* s, const double* knob, int32_t scheme) {
   snprintf(s->material, sizeof s->material, "{\"young\": %.17g, \"poisson\": 0.45}", knob[YOUNG]);
   snprintf(s->spring_keys, sizeof s->spring_keys,
            "{\"name\": \"spring\", \"from\": [2, 0, 2], \"points\": [[1.5, 0.4, 0.6]], \"control\": "
-           "\"length_ratio\", \"amount\": 0.9, \"stiffness\": %.17g}",
-           knob[SPRING]);
+           "\"length_ratio\", \"amount\": %.17g, \"stiffness\": %.17g}",
+           knob[RATIO], knob[SPRING]);
   ok(s, iso_add_soft_body(s->world, "bar", mesh, knob[YOUNG], 0.45, knob[DENSITY], &s->body));
   iso_mesh_free(mesh);
   ok(s, iso_add_volume(s->world, s->body, &s->rows));
