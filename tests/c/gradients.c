@@ -455,8 +455,8 @@ static void queries_that_are_refused(void) {
 
 enum { TERMS = 3, SUMS = 2, STEPS = 3, SEEN = 3 };
 
-/* The tip at the end, and the distances of all nodes from targets at two times; by Young's modulus, the traction
- * and the velocity at the start, which is `speed` times the motion. */
+/* The tip at the end, and the distances of all nodes from targets at two times; by Young's modulus, the
+ * traction and the velocity at the start, which is `speed` times the motion. */
 static void go_the_way(const double* knob, double speed, int32_t mode, int32_t kept, double* values,
                        double* jacobian) {
   static const double steps[STEPS] = {0.02, 0.03, 0.02};
