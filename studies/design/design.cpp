@@ -1,6 +1,6 @@
 // Outline of a design:
 //   1. bodies that change get meshes of their own, files that trials write
-//   2. unknowns: white numbers of the field (cell_field.h), and moves over their ranges
+//   2. unknowns: white numbers of the field (smooth_field.h), and moves over their ranges
 //   3. a trial: mesh and factors go into the scene, which is built and goes through the times of the data;
 //      gradients by all cells and moves come from World::gradients, a solve a number of the data
 //   4. search (inverse/search.h): errors over noise, the field against what is taken for granted, volume
@@ -15,7 +15,7 @@
 
 #include "engine/base/text.h"
 #include "scenes/body_parts.h"
-#include "studies/design/cell_field.h"
+#include "studies/design/smooth_field.h"
 #include "studies/design/write_gmsh.h"
 #include "studies/inverse/search.h"
 
@@ -47,7 +47,8 @@ class BoundedLogarithm {
 
 // Of unknowns without other means: so little that it only chooses among equals.
 constexpr double kLeastChange = 1e-6;
-// Of what is beyond a volume bound, over the volume: it stays beyond by about one over the square.
+// Of what is beyond a volume bound, over the volume, against errors over the largest change: it stays beyond
+// by about one over the square.
 constexpr double kVolumeWeight = 1e4;
 
 Result<std::size_t> body_named(const SceneDef& scene, const std::string& name) {
@@ -126,7 +127,7 @@ class DesignSearch {
   const DesignOptions& options_;
   Design out_;
   std::size_t field_body_ = 0, moved_body_ = 0;
-  std::optional<CellField> field_;
+  std::optional<SmoothField> field_;
   std::vector<std::vector<double>> present_;  // factors that materials of the field's body have already
   std::optional<Morph> morph_;
   std::string mesh_path_;
@@ -261,7 +262,7 @@ inverse::ParametersOf DesignSearch::parameters() const {
 // What is beyond a bound, as one more error.
 void DesignSearch::add_volume_row(const std::vector<double>& moves, Vector& r, Matrix* jacobian) const {
   if (!options_.least_volume && !options_.most_volume) return;
-  const double volume = morph_->volume(moves), unit = kVolumeWeight / out_.volume_before;
+  const double volume = morph_->volume(moves), unit = kVolumeWeight / (out_.noise * out_.volume_before);
   const double least = options_.least_volume.value_or(0), most = options_.most_volume.value_or(HUGE_VAL);
   const double beyond = volume < least ? volume - least : volume > most ? volume - most : 0;
   const auto row = r.size() - 1;
@@ -313,7 +314,7 @@ Result<bool> DesignSearch::errors(const Vector& x, Vector& r, Matrix* jacobian) 
     return false;
   }
   last_ = std::move(told).value();
-  if (out_.scale.size() == 0) out_.scale = inverse::scales(data_, last_.rest);
+  if (out_.scale.size() == 0) out_.scale = inverse::scales(data_, last_);
   const auto n = static_cast<Eigen::Index>(data_.values.size());
   const Vector weight = (out_.noise * out_.scale).cwiseInverse();
   r.setZero(rows());

@@ -13,7 +13,7 @@ namespace isochor::design {
 // A factor on the stiffness of each cell of a body.
 struct StiffnessField {
   std::string body;                 // its name
-  double length = 0;                // over which the field is smooth [m]; see CellField
+  double length = 0;                // over which the field is smooth [m]; see SmoothField
   double spread = 0.5;              // standard deviation of the logarithm of the factor
   double least = 0.01, most = 100;  // the factor stays between
 };

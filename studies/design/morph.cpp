@@ -7,7 +7,7 @@
 #include <set>
 
 #include "isochor/mesh_select.h"
-#include "studies/design/cell_field.h"
+#include "studies/design/smooth_field.h"
 
 namespace isochor::design {
 

@@ -54,6 +54,16 @@ Result<Place> place_of(const std::string& path) {
   return out;
 }
 
+Result<double> value_now(const SceneDef& scene, const std::string& path, const Place& place) {
+  // Scenes leave a density out that is the usual one.
+  const bool there =
+      place.body < scene.bodies.size() && place.material < scene.bodies[place.body].materials.size();
+  if (place.key == "density" && there) return scene.bodies[place.body].materials[place.material].density;
+  const auto number = number_in_keys(to_json(scene), path);
+  if (!number) return number.failure();
+  return number.value().value;
+}
+
 // How a constant goes to the search.
 struct Unknown {
   std::string path;
@@ -72,12 +82,12 @@ Result<Unknown> unknown_of(const Sought& sought, const std::vector<Experiment>& 
   bool found = false;
   std::string why;
   for (const Experiment& e : experiments) {
-    const auto number = number_in_keys(to_json(e.scene), sought.path);
-    if (!number) {
-      why = number.error();
+    auto here = value_now(e.scene, sought.path, u.place);
+    if (!here) {
+      why = here.error();
       continue;
     }
-    const double value = number.value().value;
+    const double value = here.value();
     if (found && value != u.start) {
       return Error{"fit: --constant " + sought.path + " begins at " + isochor::number(u.start) + " and at " +
                    isochor::number(value) + " in two scenes; give both the same with --set"};
@@ -187,7 +197,7 @@ Result<bool> SceneSearch::errors(const Vector& x, Vector& r, Matrix* jacobian) {
       note_ = e.name + ": " + a.reason;
       return false;
     }
-    if (scale_.size() <= k) scale_.push_back(inverse::scales(e.data, a.rest));
+    if (scale_.size() <= k) scale_.push_back(inverse::scales(e.data, a));
     const auto n = static_cast<Eigen::Index>(e.data.values.size());
     const double share = std::sqrt(e.weight / static_cast<double>(n));
     const Vector weight = share * scale_[k].cwiseInverse();

@@ -52,7 +52,8 @@ double size_of(const BuiltScene& built) {
 
 }  // namespace
 
-Watched::Watched(const SceneDef& scene, const BuiltScene& built, const std::vector<Quantity>& quantities) {
+Watched::Watched(const SceneDef& scene, const BuiltScene& built, const std::vector<Quantity>& quantities)
+    : length_(size_of(built)) {
   for (const Quantity& q : quantities) {
     Place place;
     place.quantity = q;
@@ -90,6 +91,15 @@ double Watched::value(const World& world, std::size_t quantity) const {
     if (gauge.effect == place.effect_name && gauge.quantity == gauge_word(kind)) return gauge.value;
   }
   return std::numeric_limits<double>::quiet_NaN();
+}
+
+double Watched::size(const World& world, std::size_t quantity) const {
+  const Place& place = places_[quantity];
+  const Kind kind = place.quantity.kind;
+  if (kind == Kind::position) return length_;
+  if (kind != Kind::force && kind != Kind::moment) return std::abs(value(world, quantity));
+  const Vec3 whole = world.reaction(place.effect)[kind == Kind::force ? 0 : 1];
+  return std::sqrt(dot(whole, whole));
 }
 
 Output Watched::output(std::size_t quantity) const {
@@ -163,6 +173,7 @@ Result<Answer> answer(const SceneDef& scene, const Data& data, const ParametersO
   Answer out;
   out.rest.resize(n);
   out.values.resize(n);
+  out.sizes.setZero(n);
   out.jacobian.setZero(n, static_cast<Eigen::Index>(numbers_of(asked, built.world)));
   for (std::size_t i = 0; i < data.values.size(); ++i)
     out.rest[static_cast<Eigen::Index>(i)] = watched.value(built.world, data.values[i].quantity);
@@ -174,8 +185,11 @@ Result<Answer> answer(const SceneDef& scene, const Data& data, const ParametersO
       return out;
     }
     const std::size_t first = at;
-    for (; at < data.values.size() && data.values[at].step == step; ++at)
-      out.values[static_cast<Eigen::Index>(at)] = watched.value(built.world, data.values[at].quantity);
+    for (; at < data.values.size() && data.values[at].step == step; ++at) {
+      const auto row = static_cast<Eigen::Index>(at);
+      out.values[row] = watched.value(built.world, data.values[at].quantity);
+      out.sizes[row] = watched.size(built.world, data.values[at].quantity);
+    }
     if (!parameters || at == first) continue;
     if (auto r = differentiate(built.world, watched, data, asked, first, at, out); !r) return r.failure();
   }
@@ -183,19 +197,19 @@ Result<Answer> answer(const SceneDef& scene, const Data& data, const ParametersO
   return out;
 }
 
-Eigen::VectorXd scales(const Data& data, const Eigen::VectorXd& rest) {
+Eigen::VectorXd scales(const Data& data, const Answer& first) {
+  constexpr double rounding = 1e-9;
   std::map<Kind, double> largest;
-  const auto size = [&](std::size_t i) {
-    const bool change = changes_count(data.quantities[data.values[i].quantity].kind);
-    return std::abs(data.values[i].value - (change ? rest[static_cast<Eigen::Index>(i)] : 0));
-  };
+  const auto kind_of = [&](std::size_t i) { return data.quantities[data.values[i].quantity].kind; };
   for (std::size_t i = 0; i < data.values.size(); ++i) {
-    double& most = largest[data.quantities[data.values[i].quantity].kind];
-    most = std::max(most, size(i));
+    const auto at = static_cast<Eigen::Index>(i);
+    const double from = changes_count(kind_of(i)) ? first.rest[at] : 0;
+    double& most = largest[kind_of(i)];
+    most = std::max({most, std::abs(data.values[i].value - from), rounding * first.sizes[at]});
   }
-  Eigen::VectorXd out(rest.size());
+  Eigen::VectorXd out(first.rest.size());
   for (std::size_t i = 0; i < data.values.size(); ++i) {
-    const double most = largest[data.quantities[data.values[i].quantity].kind];
+    const double most = largest[kind_of(i)];
     out[static_cast<Eigen::Index>(i)] = most > 0 ? most : 1;
   }
   return out;

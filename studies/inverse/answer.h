@@ -15,6 +15,9 @@ class Watched {
  public:
   Watched(const SceneDef& scene, const BuiltScene& built, const std::vector<Quantity>& quantities);
   double value(const World& world, std::size_t quantity) const;
+  // Of the vector that a component is of, and of positions the size of the scene: against it zeros are told
+  // from what is left of them by rounding.
+  double size(const World& world, std::size_t quantity) const;
   Output output(std::size_t quantity) const;
 
  private:
@@ -26,6 +29,7 @@ class Watched {
     std::string effect_name;
   };
   std::vector<Place> places_;
+  double length_ = 0;  // of the diagonal of the scene [m]
 };
 
 struct Answer {
@@ -33,6 +37,7 @@ struct Answer {
   std::string reason;        // why there is no equilibrium, where it is not found
   Eigen::VectorXd rest;      // of the data, as the scene begins
   Eigen::VectorXd values;    // of the data
+  Eigen::VectorXd sizes;     // of each: Watched::size()
   Eigen::MatrixXd jacobian;  // by the numbers of the parameters, one after the other
   bool regular = true;       // false: derivatives are those of one side; `note` says why
   std::string note;
@@ -45,8 +50,8 @@ using ParametersOf = std::function<Result<std::vector<Parameter>>(const BuiltSce
 Result<Answer> answer(const SceneDef& scene, const Data& data, const ParametersOf& parameters, int threads);
 
 // What is one of errors: of positions, volumes and lengths the largest change since rest among the data of
-// their kind, of the others the largest value.
-Eigen::VectorXd scales(const Data& data, const Eigen::VectorXd& rest);
+// their kind, of the others the largest value; not below what rounding leaves of a zero.
+Eigen::VectorXd scales(const Data& data, const Answer& first);
 
 // Refuses numbers that no scene of this size shows: millimeters for meters, milliliters for cubic meters; and
 // kinds whose answers differ a thousandfold.

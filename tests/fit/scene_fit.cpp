@@ -13,6 +13,7 @@
 using namespace isochor;
 using namespace isochor::fit;
 using Catch::Matchers::Contains;
+using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 using test::value;
 
@@ -24,7 +25,7 @@ SceneDef block(const Overrides& overrides = {}) {
                 "mesh": {"box": {"upper": [2, 1, 1], "divisions": [2, 1, 1], "cell_type": "hex8"}},
                 "materials": [{"law": "mooney_rivlin", "c1": 300, "c2": 100, "poisson": 0.5}]}],
     "dirichlet": [{"name": "wall", "where": {"surfaces": "x0"}}],
-    "tractions": [{"name": "pull", "surface": "x1", "traction": [2000, 300, 0]}],
+    "tractions": [{"name": "pull", "surface": "x1", "traction": [500, 90, 0]}],
     "gravity": [0, 0, -0.01],
     "probes": [{"name": "tip", "point": [2, 0.5, 0.5]}]
   })",
@@ -52,7 +53,7 @@ Experiment measured(const SceneDef& truth, const SceneDef& start, const std::str
   REQUIRE(made.found);
   for (std::size_t i = 0; i < data.values.size(); ++i)
     data.values[i].value = made.values[static_cast<Eigen::Index>(i)];
-  const Eigen::VectorXd scale = inverse::scales(data, made.rest);
+  const Eigen::VectorXd scale = inverse::scales(data, made);
   std::mt19937 random(seed);
   std::normal_distribution<double> normal;
   for (std::size_t i = 0; i < data.values.size(); ++i)
@@ -83,6 +84,31 @@ const std::string c1 = "bodies[0].materials[0].c1", c2 = "bodies[0].materials[0]
 
 }  // namespace
 
+TEST_CASE("gradients of what a scene answers are those of differences", "[fit]") {
+  const auto at = [](double c, bool gradients) {
+    const SceneDef scene = block({override_of(c1, c)});
+    inverse::Data data = value(inverse::parse_data(
+        "time,tip.x,tip.y,tip.z,wall.force.x,wall.force.y,wall.moment.z\n0.5,1,1,1,1,1,1\n1,1,1,1,1,1,1\n",
+        "d", scene));
+    inverse::ParametersOf parameters;
+    if (gradients) {
+      parameters = [&](const BuiltScene& built) -> Result<std::vector<Parameter>> {
+        return std::vector{Parameter::material(built.bodies[0], "", c, [](double v) -> Result<MaterialPtr> {
+          return mooney_rivlin({.c1 = v, .c2 = 100, .poisson = 0.5});
+        })};
+      };
+    }
+    return value(inverse::answer(scene, data, parameters, 1));
+  };
+  const inverse::Answer here = at(320, true), above = at(320.5, false), below = at(319.5, false);
+  REQUIRE(here.jacobian.rows() == 12);
+  for (Eigen::Index i = 0; i < 12; ++i) {
+    const double difference = above.values[i] - below.values[i];
+    CAPTURE(i, here.values[i]);
+    CHECK_THAT(here.jacobian(i, 0), WithinAbs(difference, 1e-5 * std::abs(difference) + 1e-10));
+  }
+}
+
 TEST_CASE("data without errors give the constants of a scene back", "[fit]") {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> anywhere(-1, 1);
@@ -91,7 +117,7 @@ TEST_CASE("data without errors give the constants of a scene back", "[fit]") {
       const double a = 300 * std::exp(0.8 * anywhere(random)), b = 100 * std::exp(0.8 * anywhere(random));
       CAPTURE(k, a, b);
       const Overrides truth{override_of(c1, a), override_of(c2, b)};
-      const std::string pressed = "tractions.pull.traction=[-400,0,100]";
+      const std::string pressed = "tractions.pull.traction=[-150,0,40]";
       const SceneFit fit = fitted({measured(block(truth), block(), "tip.x,tip.y", {0.5, 1}),
                                    measured(block({truth[0], truth[1], pressed}), block({pressed}),
                                             "tip.x,wall.force.y,tip.z", {0.3, 1})},
@@ -99,7 +125,7 @@ TEST_CASE("data without errors give the constants of a scene back", "[fit]") {
       CHECK(fit.converged);
       CHECK_THAT(fit.constants[0].value, WithinRel(a, 1e-6));
       CHECK_THAT(fit.constants[1].value, WithinRel(b, 1e-6));
-      CHECK(fit.rms < 1e-7);
+      CHECK(fit.rms < 1e-6);
     }
   }
   SECTION("modulus and density of an arm from the bend and the volume at pressures") {
@@ -185,7 +211,7 @@ TEST_CASE("data files of scenes are read, and what is wrong in them is named", "
   CHECK_THAT(told("time,air.volume\n1,2\n"), Contains("air.volume"));
   CHECK_THAT(told("time,tip.x\n1,2,3\n"), Contains("3 columns"));
   CHECK_THAT(told("tip.x\n1\n"), Contains("\"time\""));
-  CHECK_THAT(told("time,X,Y,Z,x,y\n1,0,0,0,0,0\n"), Contains("\"z\""));
+  CHECK_THAT(told("time,X,Y,Z,x,y\n1,0,0,0,0,0\n"), Contains("'z'"));
   CHECK_THAT(told("time,tip.x\n"), Contains("no number"));
   const inverse::Data gaps = value(inverse::parse_data("time,tip.x,tip.y\n1,,0.5\n2,2.1,\n", "d", scene));
   REQUIRE(gaps.values.size() == 2);

@@ -14,10 +14,10 @@ namespace isochor::design {
 // V^1/2, K the graph Laplacian of cells that share a face, with area over distance of centers as weights.
 // That is the equation of Whittle and Matern (Lindgren, Rue & Lindstroem 2011) for the covariance s^2 exp(-r
 // / l), free at the boundary, where the variance is larger.
-class CellField {
+class SmoothField {
  public:
   // `length` l [m], `spread` s: the standard deviation of m.
-  CellField(const Mesh& mesh, double length, double spread);
+  SmoothField(const Mesh& mesh, double length, double spread);
   Eigen::Index cells() const { return root_volume_.size(); }
   // B xi, and J B of a matrix with a column a cell.
   Eigen::VectorXd field(const Eigen::VectorXd& white) const;

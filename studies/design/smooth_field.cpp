@@ -1,4 +1,4 @@
-#include "studies/design/cell_field.h"
+#include "studies/design/smooth_field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,7 +52,7 @@ double cell_volume(const Mesh& mesh, std::span<const Vec3> nodes, std::size_t ce
          tet(0, 5, 1, 6);
 }
 
-CellField::CellField(const Mesh& mesh, double length, double spread) {
+SmoothField::SmoothField(const Mesh& mesh, double length, double spread) {
   const auto n = static_cast<std::size_t>(mesh.cell_count());
   const auto per = static_cast<std::size_t>(nodes_per_cell(mesh.cell_type));
   root_volume_.resize(static_cast<Eigen::Index>(n));
@@ -90,16 +90,16 @@ CellField::CellField(const Mesh& mesh, double length, double spread) {
   factor_ = spread * std::sqrt(8 * pi / length);
 }
 
-Eigen::VectorXd CellField::field(const Eigen::VectorXd& white) const {
+Eigen::VectorXd SmoothField::field(const Eigen::VectorXd& white) const {
   return factor_ * solver_->solve(root_volume_.cwiseProduct(white));
 }
 
-Eigen::MatrixXd CellField::times(const Eigen::MatrixXd& jacobian) const {
+Eigen::MatrixXd SmoothField::times(const Eigen::MatrixXd& jacobian) const {
   const Eigen::MatrixXd solved = solver_->solve(jacobian.transpose());
   return factor_ * solved.transpose() * root_volume_.asDiagonal();
 }
 
-Eigen::VectorXd CellField::deviations(const Eigen::MatrixXd& jacobian) const {
+Eigen::VectorXd SmoothField::deviations(const Eigen::MatrixXd& jacobian) const {
   const Eigen::MatrixXd seen = times(jacobian);  // J B
   Eigen::MatrixXd inner = seen * seen.transpose();
   inner.diagonal().array() += 1;
