@@ -18,11 +18,12 @@ inline void quiet_ceres() {
   (void)once;
 }
 
-// Ends a search in good order where it is asked to.
+// Ends a search in good order where it is asked to. An abort would put the start in the place of what was
+// found.
 struct StopSearch : ceres::IterationCallback {
   explicit StopSearch(const std::function<bool()>& asked) : stop(asked) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return stop && stop() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+    return stop && stop() ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
   const std::function<bool()>& stop;
 };

@@ -76,12 +76,16 @@ class PriorCost : public ceres::CostFunction {
 struct Watch : ceres::IterationCallback {
   Watch(const SearchOptions& asked, const Eigen::VectorXd& where) : options(asked), x(where) {}
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& s) override {
-    if (options.on_iteration && (s.step_is_successful || s.iteration == 0))
-      options.on_iteration(s.iteration, s.cost, x);
+    if (!s.step_is_successful && s.iteration > 0) return ceres::SOLVER_CONTINUE;
+    best = x;
+    cost = s.cost;
+    if (options.on_iteration) options.on_iteration(s.iteration, s.cost, x);
     return ceres::SOLVER_CONTINUE;
   }
   const SearchOptions& options;
   const Eigen::VectorXd& x;
+  Eigen::VectorXd best;
+  double cost = 0;
 };
 
 }  // namespace
@@ -123,12 +127,18 @@ Search search(const SearchProblem& problem, const SearchOptions& options) {
   how.num_threads = 1;
   how.update_state_every_iteration = true;
   how.callbacks = {&watch, &stop};
+  how.max_num_consecutive_invalid_steps = 20;
   ceres::Solver::Summary summary;
   ceres::Solve(how, &least_squares, &summary);
   out.converged = summary.termination_type == ceres::CONVERGENCE;
   out.interrupted = options.stop && options.stop();
   out.reason = out.converged ? "" : out.interrupted ? "interrupted" : summary.message;
   out.cost = summary.final_cost;
+  // Where a search fails Ceres gives the start back.
+  if (!summary.IsSolutionUsable() && watch.best.size() > 0) {
+    out.x = watch.best;
+    out.cost = watch.cost;
+  }
   out.iterations = static_cast<int>(summary.iterations.size());
   return out;
 }

@@ -313,6 +313,24 @@ TEST_CASE("bounds of moves, volume and mesh are kept", "[design]") {
   CHECK(whole.quality < 0.85);
 }
 
+TEST_CASE("a design that is stopped keeps what it has", "[design]") {
+  const Folder folder;
+  const SceneDef scene = slab({4, 3, 3});
+  const inverse::Data data = value(inverse::parse_data("time,corner.x\n1,0.123\n", "wanted", scene));
+  DesignOptions options = options_in(folder);
+  options.moves = {value(parse_move("z1=-0.05:0.02", scene))};
+  options.hold = {"z0"};
+  int steps = 0;
+  options.on_iteration = [&](int iteration, double) { steps = iteration; };
+  options.stop = [&] { return steps >= 2; };
+  const Design stopped = value(design::design(scene, data, options));
+  CHECK(stopped.interrupted);
+  CHECK(steps == 2);
+  REQUIRE_FALSE(stopped.history.empty());
+  CHECK(stopped.moves[0].value == stopped.history.back().moves[0]);
+  CHECK(stopped.error < 0.5 * stopped.error_before);
+}
+
 TEST_CASE("designs refuse what means nothing", "[design]") {
   const Folder folder;
   const SceneDef scene = slab({2, 2, 2});
