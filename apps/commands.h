@@ -76,8 +76,11 @@ struct StudyArguments {
 
 struct FitArguments {
   std::vector<std::string> curves;  // files, with ":mode" behind
-  std::vector<std::string> laws;    // empty: all
-  std::string folder;               // empty: out/fit/NAME
+  // Constants of scenes in place of laws: SCENE:DATA or SCENE:DATA:WEIGHT, and PATH=LEAST:MOST.
+  std::vector<std::string> scenes, constants, overrides;
+  int threads = 0;
+  std::vector<std::string> laws;  // empty: all
+  std::string folder;             // empty: out/fit/NAME
   std::string strain, stress, stress_unit;
   std::optional<double> lowest, highest;  // engineering strain
   bool relative = false, json = false, quiet = false;
@@ -118,6 +121,7 @@ int export_live(const LiveArguments& arguments, const SceneDef& scene);
 int view(const ViewArguments& arguments);
 int study(const StudyArguments& arguments);
 int fit_laws(const FitArguments& arguments);
+int fit_constants(const FitArguments& arguments);
 
 struct DriveArguments {
   std::string scene, targets, folder;           // folder empty: out/drive/NAME
@@ -127,6 +131,20 @@ struct DriveArguments {
   bool json = false, quiet = false;
 };
 int drive_scene(const DriveArguments& arguments);
+
+struct DesignArguments {
+  std::string scene, targets, folder;  // folder empty: out/design/NAME
+  std::vector<std::string> overrides;
+  std::vector<std::string> moves, hold;  // SURFACE=LEAST:MOST; surfaces
+  std::string stiffness;                 // a body; empty: none
+  double length = 0, spread = 0.5;       // of the stiffness field [m], of its logarithm
+  double least_factor = 0.01, most_factor = 100;
+  std::optional<double> noise, least_volume, most_volume;  // over the largest change; [m^3]
+  double quality = 0.2;
+  int iterations = 60, threads = 0;
+  bool json = false, quiet = false;
+};
+int design_scene(const DesignArguments& arguments);
 // The study of random scenes; `stop` is asked now and then.
 int chaos(const StudyArguments& arguments, const std::function<bool()>& stop);
 int show(const std::string& scene, const std::vector<std::string>& overrides);

@@ -57,6 +57,7 @@ Result<void> write(const std::string& folder, const std::vector<fit::Curve>& cur
 }  // namespace
 
 int fit_laws(const FitArguments& a) {
+  if (a.curves.empty()) return refuse("fit: nothing was measured; give curves, or --scene SCENE:DATA");
   fit::CurveOptions how;
   how.strain_column = a.strain;
   how.stress_column = a.stress;

@@ -41,15 +41,19 @@ CLI::Validator not_negative() {
   return number_that([](double v) { return v >= 0; }, "0 or a positive number");
 }
 
-void add_run(CLI::App& top, app::RunArguments& a) {
-  CLI::App* c = top.add_subcommand("run", "Run a scene of the library or a scene file");
-  c->add_option("scene", a.scene, "Name of a scene (see `isochor list`) or a file that ends in .json")
-      ->capture_default_str();
-  c->add_option("--set", a.overrides, "Change a value of the scene: path=value")
+void add_overrides(CLI::App* c, std::vector<std::string>& overrides) {
+  c->add_option("--set", overrides, "Change a value of the scene: path=value")
       ->type_name("PATH=VALUE")
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
+}
+
+void add_run(CLI::App& top, app::RunArguments& a) {
+  CLI::App* c = top.add_subcommand("run", "Run a scene of the library or a scene file");
+  c->add_option("scene", a.scene, "Name of a scene (see `isochor list`) or a file that ends in .json")
+      ->capture_default_str();
+  add_overrides(c, a.overrides);
   c->add_option("--out", a.folder, "Folder of the outputs; default out/NAME")->type_name("DIR");
   c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
   c->add_option("--budget", a.budget, "Stop after this much wall time")
@@ -108,8 +112,21 @@ void add_fit(CLI::App& top, app::FitArguments& a) {
   c->add_option("curve", a.curves,
                 "CSV files with strain (or stretch) and stress; FILE:equibiaxial, FILE:pure_shear for other "
                 "modes than "
-                "uniaxial")
-      ->required();
+                "uniaxial");
+  c->add_option("--scene", a.scenes,
+                "In place of curves: a scene and a CSV file of what was measured of it; may be given again")
+      ->type_name("SCENE:DATA:WEIGHT")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  c->add_option("--constant", a.constants,
+                "A constant that is sought, by its path in the scenes, with bounds; may be given again")
+      ->type_name("PATH=LEAST:MOST")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  add_overrides(c, a.overrides);
+  c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
   c->add_option("--law", a.laws, "Law to fit, may be given again; default all")->allow_extra_args(false);
   c->add_option("--strain", a.strain, "Column of the strain; default by its name")->type_name("NAME");
   c->add_option("--stress", a.stress, "Column of the stress; default by its name")->type_name("NAME");
@@ -140,11 +157,7 @@ void add_drive(CLI::App& top, app::DriveArguments& a) {
       ->take_all()
       ->expected(1)
       ->allow_extra_args(false);
-  c->add_option("--set", a.overrides, "Change a value of the scene: path=value")
-      ->type_name("PATH=VALUE")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+  add_overrides(c, a.overrides);
   c->add_option("--tolerance", a.tolerance, "Distance within which a target is reached; default 1e-6")
       ->type_name("METERS")
       ->check(positive());
@@ -155,6 +168,61 @@ void add_drive(CLI::App& top, app::DriveArguments& a) {
   c->footer(
       "Exit codes: 0 all targets are reached, 3 some are not (drive.csv says which and how far), 2 bad "
       "input.");
+}
+
+void add_design(CLI::App& top, app::DesignArguments& a) {
+  CLI::App* c =
+      top.add_subcommand("design", "Find shapes and stiffness fields that bring a scene to targets");
+  c->add_option("scene", a.scene, "Name of a scene (see `isochor list`) or a file that ends in .json")
+      ->required();
+  c->add_option("--targets", a.targets, "CSV file: time and what is wanted then, or markers")
+      ->required()
+      ->type_name("FILE");
+  c->add_option("--move", a.moves,
+                "A surface whose place is chosen, between bounds in meters along its outward normals (or "
+                "SURFACE.x along an axis); may be given again")
+      ->type_name("BODY:SURFACE=LEAST:MOST")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  c->add_option("--hold", a.hold, "A surface that stays; may be given again; default all that does not move")
+      ->type_name("SURFACE")
+      ->take_all()
+      ->expected(1)
+      ->allow_extra_args(false);
+  c->add_option("--volume-least", a.least_volume, "Of the body that moves, at rest [m^3]")->check(positive());
+  c->add_option("--volume-most", a.most_volume, "Of the body that moves, at rest [m^3]")->check(positive());
+  c->add_option("--quality", a.quality, "Least J of a cell against the mesh as it came; default 0.2")
+      ->check(number_that([](double v) { return v > 0 && v < 1; }, "a number between 0 and 1"));
+  CLI::Option* field =
+      c->add_option("--stiffness", a.stiffness, "Body whose stiffness is chosen cell by cell")
+          ->type_name("BODY");
+  c->add_option("--length", a.length, "Length over which the field is smooth [m]")
+      ->check(positive())
+      ->needs(field);
+  c->add_option("--spread", a.spread, "Standard deviation of the logarithm of factors; default 0.5")
+      ->check(positive())
+      ->needs(field);
+  c->add_option("--least", a.least_factor, "Least factor on the stiffness; default 0.01")
+      ->check(positive())
+      ->needs(field);
+  c->add_option("--most", a.most_factor, "Largest factor on the stiffness; default 100")
+      ->check(positive())
+      ->needs(field);
+  c->add_option("--noise", a.noise,
+                "Errors that count as met, over the largest change; default 1e-4, with --stiffness 0.01")
+      ->check(positive());
+  c->add_option("--iterations", a.iterations, "At most so many steps; default 60")
+      ->check(CLI::Range(1, 100000));
+  add_overrides(c, a.overrides);
+  c->add_option("--out", a.folder, "Folder of the outputs; default out/design/NAME")->type_name("DIR");
+  c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
+  c->add_flag("--json", a.json, "Print design.json");
+  c->add_flag("--quiet", a.quiet, "Print errors only");
+  c->footer(
+      "Exit codes: 0 targets are met, 3 they are not (design.json says how far), 2 bad input, 130 "
+      "interrupted: "
+      "what was found up to then is kept.");
 }
 
 void add_view(CLI::App& top, app::ViewArguments& a) {
@@ -173,11 +241,7 @@ void add_live(CLI::App& top, app::LiveArguments& a) {
   CLI::App* c = top.add_subcommand("live", "Run a scene in the browser, where it answers to the hand");
   c->add_option("scene", a.scene, "Name of a scene (see `isochor list`) or a file that ends in .json")
       ->capture_default_str();
-  c->add_option("--set", a.overrides, "Change a value of the scene: path=value")
-      ->type_name("PATH=VALUE")
-      ->take_all()
-      ->expected(1)
-      ->allow_extra_args(false);
+  add_overrides(c, a.overrides);
   c->add_option("--host", a.host,
                 "Address to listen on; others than this machine can reach what is no loopback")
       ->capture_default_str();
@@ -213,6 +277,7 @@ int dispatch(int argc, char** argv) {
   app::FitArguments fit;
   app::LiveArguments live;
   app::DriveArguments drive;
+  app::DesignArguments design;
   bool json = false;
   double scale = 1;
   std::vector<std::string> meshes, overrides;
@@ -225,6 +290,7 @@ int dispatch(int argc, char** argv) {
   add_live(top, live);
   add_fit(top, fit);
   add_drive(top, drive);
+  add_design(top, design);
   CLI::App* check =
       top.add_subcommand("check", "Check mesh files: counts and findings; exit 2 if one is not usable");
   check->add_option("mesh", meshes, "Mesh files (.msh, .vtk, .vtu, .node/.ele, .mesh)")->required();
@@ -259,8 +325,9 @@ int dispatch(int argc, char** argv) {
     return app::keys(schema ? app::KeysAs::schema : tables ? app::KeysAs::tables : app::KeysAs::lines);
   }
   if (version->parsed()) return app::version(json);
-  if (top.got_subcommand("fit")) return app::fit_laws(fit);
+  if (top.got_subcommand("fit")) return fit.scenes.empty() ? app::fit_laws(fit) : app::fit_constants(fit);
   if (top.got_subcommand("drive")) return app::drive_scene(drive);
+  if (top.got_subcommand("design")) return app::design_scene(design);
   if (top.got_subcommand("study")) return app::study(study);
   if (top.got_subcommand("view")) return app::view(view);
   if (top.got_subcommand("live")) return app::live(live);

@@ -16,8 +16,8 @@
 #include "engine/base/text.h"
 #include "isochor/gradients.h"
 #include "scenes/effects/kind.h"
-#include "scenes/probes.h"
 #include "studies/drive/bounded.h"
+#include "studies/inverse/answer.h"
 
 namespace isochor::drive {
 
@@ -66,13 +66,8 @@ constexpr int kMostPolishing = 6;
 class Search {
  public:
   Search(Drive& drive, const SceneDef& scene, BuiltScene& built, const DriveOptions& options)
-      : drive_(drive), options_(options), world_(built.world) {
-    for (const Goal& goal : drive.targets.goals) {
-      const ProbeDef& probe = scene.probes[goal.probe];
-      const BodyId body = built.bodies[static_cast<std::size_t>(probe.body)];
-      points_.push_back(locate(world_.mesh(body), probe.point));
-      bodies_.push_back(body);
-    }
+      : drive_(drive), options_(options), world_(built.world), watched_(scene, built, drive.targets.goals) {
+    find_units();
   }
 
   Result<void> find_effects(const SceneDef& scene, const BuiltScene& built);
@@ -82,15 +77,21 @@ class Search {
 
  private:
   using Vector = Eigen::VectorXd;
-  std::size_t goals() const { return points_.size(); }
+  std::size_t goals() const { return drive_.targets.goals.size(); }
   Eigen::Index amounts() const { return static_cast<Eigen::Index>(effects_.size()); }
 
+  // Of each goal what counts as 1: a meter, or the largest target of its kind.
+  void find_units();
+  // Over these units.
   Vector positions() const {
     Vector out(static_cast<Eigen::Index>(goals()));
     for (std::size_t g = 0; g < goals(); ++g)
-      out[static_cast<Eigen::Index>(g)] =
-          points_[g].at(world_.positions(bodies_[g]))[drive_.targets.goals[g].component];
+      out[static_cast<Eigen::Index>(g)] = watched_.value(world_, g) / units_[static_cast<Eigen::Index>(g)];
     return out;
+  }
+  Vector wanted_at(std::size_t step) const {
+    return Eigen::Map<const Vector>(drive_.targets.value[step].data(), static_cast<Eigen::Index>(goals()))
+        .cwiseQuotient(units_);
   }
   // From the state kept, with amounts `a`; false: no equilibrium.
   bool attempt(const Vector& a, double h);
@@ -111,8 +112,8 @@ class Search {
   Drive& drive_;
   const DriveOptions& options_;
   World& world_;
-  std::vector<MaterialPoint> points_;
-  std::vector<BodyId> bodies_;
+  inverse::Watched watched_;
+  Vector units_;
   std::vector<EffectId> effects_;
   std::vector<std::byte> kept_;
   Vector before_, scale_, least_, most_;  // amounts at the target before, their sizes, bounds at this one
@@ -122,6 +123,21 @@ class Search {
   int polished_ = 0;
   double weight_ = 0;  // its largest entry, by amounts over their sizes [m]
 };
+
+void Search::find_units() {
+  units_.setOnes(static_cast<Eigen::Index>(goals()));
+  for (std::size_t g = 0; g < goals(); ++g) {
+    const auto kind = drive_.targets.goals[g].kind;
+    if (kind == inverse::Quantity::Kind::position) continue;
+    double most = 0;
+    for (const std::vector<double>& values : drive_.targets.value) {
+      for (std::size_t k = 0; k < goals(); ++k) {
+        if (drive_.targets.goals[k].kind == kind) most = std::max(most, std::abs(values[k]));
+      }
+    }
+    if (most > 0) units_[static_cast<Eigen::Index>(g)] = most;
+  }
+}
 
 Result<void> Search::check_distances() const {
   constexpr double farthest = 100;  // over the size of the bodies
@@ -139,6 +155,7 @@ Result<void> Search::check_distances() const {
   const Vector now = positions();
   for (std::size_t step = 0; step < drive_.targets.time.size(); ++step) {
     for (std::size_t g = 0; g < goals(); ++g) {
+      if (drive_.targets.goals[g].kind != inverse::Quantity::Kind::position) continue;
       const double target = drive_.targets.value[step][g],
                    away = std::abs(target - now[static_cast<Eigen::Index>(g)]);
       if (away <= farthest * length) continue;
@@ -198,22 +215,15 @@ bool Search::attempt(const Vector& a, double h) {
 
 Result<void> Search::differentiate() {
   GradientQuery query;
-  for (std::size_t g = 0; g < goals(); ++g) {
-    const MaterialPoint& p = points_[g];
-    std::vector<Index> nodes(p.nodes.begin(), p.nodes.begin() + p.count);
-    Vec3 axis{};
-    axis[drive_.targets.goals[g].component] = 1;
-    std::vector<Vec3> weights;
-    for (int k = 0; k < p.count; ++k) weights.push_back(p.weights[static_cast<std::size_t>(k)] * axis);
-    query.outputs.push_back(Output::positions(bodies_[g], std::move(nodes), std::move(weights)));
-  }
+  for (std::size_t g = 0; g < goals(); ++g) query.outputs.push_back(watched_.output(g));
   for (const EffectId e : effects_) query.parameters.push_back(Parameter::amount_of(e));
   auto gradients = world_.gradients(query);
   if (!gradients) return gradients.failure();
   jacobian_.resize(static_cast<Eigen::Index>(goals()), amounts());
   for (std::size_t g = 0; g < goals(); ++g) {
+    const auto row = static_cast<Eigen::Index>(g);
     for (Eigen::Index i = 0; i < amounts(); ++i)
-      jacobian_(static_cast<Eigen::Index>(g), i) = gradients.value().of(g, static_cast<std::size_t>(i));
+      jacobian_(row, i) = gradients.value().of(g, static_cast<std::size_t>(i)) / units_[row];
   }
   weight_ = (jacobian_ * scale_.asDiagonal()).cwiseAbs().maxCoeff();
   return {};
@@ -312,8 +322,7 @@ bool Search::approach(Vector& a, Vector& off, double h, const Vector& wanted, Re
 bool Search::reach(std::size_t step) {
   const Targets& targets = drive_.targets;
   const double h = targets.time[step] - (step > 0 ? targets.time[step - 1] : 0);
-  const Vector wanted =
-      Eigen::Map<const Vector>(targets.value[step].data(), static_cast<Eigen::Index>(goals()));
+  const Vector wanted = wanted_at(step);
   const auto start = start_at(step, h, wanted);
   if (!start) return false;
   Vector a = *start, off = positions() - wanted;
@@ -328,9 +337,9 @@ bool Search::reach(std::size_t step) {
     if (!approach(a, off, h, wanted, out)) break;
   }
   if (!stuck_.empty()) return false;
-  const Vector there = positions();
+  const Vector there = positions(), shown = there.cwiseProduct(units_);
   out.amount.assign(a.data(), a.data() + a.size());
-  out.position.assign(there.data(), there.data() + there.size());
+  out.position.assign(shown.data(), shown.data() + shown.size());
   out.distance = (there - wanted).norm();
   out.reached = out.distance <= options_.tolerance;
   out.nearest = out.nearest && !out.reached;

@@ -1,4 +1,5 @@
-// Amounts of effects that bring probes to targets, one target after the other.
+// Amounts of effects that bring probes, forces of supports and chambers to targets, one target after the
+// other.
 #pragma once
 
 #include <functional>
@@ -20,7 +21,9 @@ struct Actuator {
 Result<Actuator> parse_actuator(const std::string& text);
 
 struct DriveOptions {
-  double tolerance = 1e-6;   // a target counts as reached within this distance [m]
+  // A target counts as reached within this distance: [m], and of forces, pressures and volumes over the
+  // largest target of their kind.
+  double tolerance = 1e-6;
   int max_iterations = 100;  // of each target
   int threads = 0;
   std::function<bool()> stop;  // asked at every iteration
@@ -29,8 +32,8 @@ struct DriveOptions {
 struct Reached {
   double time = 0;
   std::vector<double> amount;    // of each actuator
-  std::vector<double> position;  // of each goal [m]
-  double distance = 0;           // from the targets, the root of the sum of squares [m]
+  std::vector<double> position;  // of each goal, in its unit
+  double distance = 0;           // from the targets, the root of the sum of squares; see tolerance
   bool reached = false;          // within the tolerance; else nearest, where `nearest`
   // To first order no amounts within bounds and rates come closer by a hundredth of the tolerance.
   bool nearest = false;

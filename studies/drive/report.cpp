@@ -37,8 +37,8 @@ const char* word(const Reached& step) {
 std::string drive_csv(const Drive& drive) {
   std::string out = "time";
   for (const Actuator& a : drive.actuators) out += "," + quoted(a.effect);
-  for (const Goal& g : drive.targets.goals) out += "," + quoted(g.name);
-  for (const Goal& g : drive.targets.goals) out += "," + quoted("target " + g.name);
+  for (const inverse::Quantity& g : drive.targets.goals) out += "," + quoted(g.name);
+  for (const inverse::Quantity& g : drive.targets.goals) out += "," + quoted("target " + g.name);
   out += ",distance,end,gradients\n";
   for (std::size_t k = 0; k < drive.steps.size(); ++k) {
     const Reached& r = drive.steps[k];
@@ -62,7 +62,7 @@ std::string drive_json(const Drive& drive) {
         {"effect", a.effect}, {"least", bound(a.least)}, {"most", bound(a.most)}, {"rate", bound(a.rate)}});
   }
   out["goals"] = Json::array();
-  for (const Goal& g : drive.targets.goals) out["goals"].push_back(g.name);
+  for (const inverse::Quantity& g : drive.targets.goals) out["goals"].push_back(g.name);
   out["steps"] = Json::array();
   for (std::size_t k = 0; k < drive.steps.size(); ++k) {
     const Reached& r = drive.steps[k];
@@ -79,7 +79,7 @@ std::string drive_json(const Drive& drive) {
 }
 
 std::vector<std::string> table_head(const Drive& drive) {
-  std::vector<std::string> out{"time", "end", "distance [m]"};
+  std::vector<std::string> out{"time", "end", "distance"};
   for (const Actuator& a : drive.actuators) out.push_back(a.effect);
   out.push_back("at a bound");
   return out;

@@ -1,7 +1,5 @@
 #include "studies/drive/targets.h"
 
-#include <charconv>
-#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -16,35 +14,6 @@ namespace {
 using mesh_files::quoted;
 using studies::cells_of;
 
-std::string probes_of(const SceneDef& scene) {
-  std::string names;
-  for (const ProbeDef& p : scene.probes) names += (names.empty() ? "\"" : ", \"") + p.name + "\"";
-  return names.empty() ? "none; add one to the scene" : names;
-}
-
-Result<Goal> goal_of(const std::string& name, const SceneDef& scene, const std::string& who) {
-  const auto dot = name.rfind('.');
-  const std::string axes = "xyz", component = dot == std::string::npos ? "" : name.substr(dot + 1);
-  if (component.size() != 1 || axes.find(component) == std::string::npos) {
-    return Error{who + "column " + quoted(name) +
-                 ": columns are \"time\" and components of probes, such as \"tip.x\""};
-  }
-  for (std::size_t p = 0; p < scene.probes.size(); ++p) {
-    if (scene.probes[p].name == name.substr(0, dot))
-      return Goal{name, p, static_cast<int>(axes.find(component))};
-  }
-  return Error{who + "column " + quoted(name) + ": the scene has no probe " + quoted(name.substr(0, dot)) +
-               "; it has " + probes_of(scene)};
-}
-
-Result<double> number_in(const std::string& cell, const std::string& who) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
-    return Error{who + quoted(cell) + " is no finite number; give one in every column"};
-  return value;
-}
-
 Result<std::size_t> read_header(const std::vector<std::string>& header, const SceneDef& scene,
                                 const std::string& who, Targets& out) {
   std::size_t time = header.size();
@@ -57,7 +26,7 @@ Result<std::size_t> read_header(const std::vector<std::string>& header, const Sc
       time = c;
       continue;
     }
-    auto goal = goal_of(header[c], scene, who);
+    auto goal = inverse::quantity_of(header[c], scene, who);
     if (!goal) return goal.failure();
     out.goals.push_back(std::move(goal).value());
   }
@@ -93,7 +62,7 @@ Result<Targets> parse_targets(const std::string& text, const std::string& source
     }
     std::vector<double> goals;
     for (std::size_t c = 0; c < columns; ++c) {
-      auto value = number_in(cells[c], who);
+      auto value = inverse::number_in(cells[c], who);
       if (!value) return value.failure();
       if (c != time) {
         goals.push_back(value.value());

@@ -6,9 +6,6 @@
 //   4. the law beyond the data: where it is stable, how uncertain it is in modes that were not measured
 #include "studies/fit/fit.h"
 
-#include <ceres/ceres.h>
-#include <glog/logging.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -17,6 +14,8 @@
 
 #include "engine/elements/material_model.h"
 #include "scenes/parts_by_keys.h"
+#include "studies/ceres_words.h"
+#include "studies/inverse/intervals.h"
 
 namespace isochor::fit {
 
@@ -84,14 +83,6 @@ struct Residuals {
   }
 };
 
-struct Stop : ceres::IterationCallback {
-  explicit Stop(const std::function<bool()>& asked) : stop(asked) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return stop && stop() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
-  }
-  const std::function<bool()>& stop;
-};
-
 struct Search {
   bool converged = false;
   std::string reason;
@@ -133,7 +124,7 @@ Search search_from(const Problem& problem, const Law& law, const Values& unit, c
     if (std::isfinite(least)) least_squares.SetParameterLowerBound(out.x.data(), at, least);
     if (std::isfinite(most)) least_squares.SetParameterUpperBound(out.x.data(), at, most);
   }
-  Stop stop(options.stop);
+  studies::StopSearch stop(options.stop);
   ceres::Solver::Options how;
   how.linear_solver_type = ceres::DENSE_QR;
   how.max_num_iterations = options.max_iterations;
@@ -193,55 +184,18 @@ double farthest(const Range& range) {
   return range.most * range.least > 1 ? range.most : range.least;
 }
 
-// The 0.975 quantile of Student's t, by its expansion in 1/n about that of the normal distribution
-// (Abramowitz & Stegun 26.7.5).
-double student(double n) {
-  constexpr double z = 1.959963984540054;
-  const double z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
-  return z + (z3 + z) / (4 * n) + (5 * z5 + 16 * z3 + 3 * z) / (96 * n * n) +
-         (3 * z7 + 19 * z5 + 17 * z3 - 15 * z) / (384 * n * n * n);
-}
-
-// Names of the constants that a direction moves most.
-std::string names_along(const Law& law, const Eigen::VectorXd& direction) {
-  std::string names;
-  const double most = direction.cwiseAbs().maxCoeff();
-  for (std::size_t i = 0; i < law.constants.size(); ++i) {
-    if (std::abs(direction[static_cast<Eigen::Index>(i)]) > 0.3 * most)
-      names += (names.empty() ? "" : " and ") + law.constants[i].name;
-  }
-  return names;
-}
-
-// Covariance of x from the Jacobian of weighted errors; constants at a bound are known to be there.
-// Directions that errors do not see are named, and have infinite variance.
+// Covariance of x from the Jacobian of weighted errors; what errors do not tell apart is named.
 Eigen::MatrixXd covariance(const Law& law, const Search& best, Fit& fit, double variance) {
-  const auto n = static_cast<Eigen::Index>(best.x.size());
-  Eigen::MatrixXd j = best.jacobian;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (fit.constants[static_cast<std::size_t>(i)].at_bound) j.col(i).setZero();
+  std::vector<char> held;
+  for (const FittedConstant& c : fit.constants) held.push_back(c.at_bound ? 1 : 0);
+  const inverse::Known known = inverse::known_from(best.jacobian, variance, held);
+  for (const std::vector<std::size_t>& moved : known.not_apart) {
+    std::string names;
+    for (const std::size_t i : moved) names += (names.empty() ? "" : " and ") + law.constants[i].name;
+    fit.warnings.push_back(
+        names + " cannot be told apart by these data; fit fewer constants or measure another mode");
   }
-  Eigen::VectorXd norm = j.colwise().norm();
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (norm[i] > 0) j.col(i) /= norm[i];
-  }
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(j, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(n, n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    const double s = svd.singularValues()[k];
-    const Eigen::VectorXd direction = svd.matrixV().col(k);
-    if (s < 1e-14 * svd.singularValues()[0]) continue;  // at a bound
-    if (s < 1e-6 * svd.singularValues()[0]) {
-      fit.warnings.push_back(
-          names_along(law, direction) +
-          " cannot be told apart by these data; fit fewer constants or measure another mode");
-    }
-    out += variance / (s * s) * direction * direction.transpose();
-  }
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index k = 0; k < n; ++k) out(i, k) /= std::max(norm[i], 1e-300) * std::max(norm[k], 1e-300);
-  }
-  return out;
+  return known.covariance;
 }
 
 void measure_errors(const Problem& problem, const std::vector<double>& errors, Fit& fit) {
@@ -330,16 +284,6 @@ void look_at_other_modes(const Law& law, const Search& best, const Values& unit,
   }
 }
 
-void quiet() {
-  static const bool once = [] {
-    // What a trial without a value makes Ceres say is no news to the user.
-    FLAGS_minloglevel = 3;
-    FLAGS_logtostderr = true;
-    return true;
-  }();
-  (void)once;
-}
-
 bool at_bound(const Constant& c, double x, double unit) {
   const auto [least, most] = bounds_of(c, x, unit);
   const double tolerance = 1e-9 * std::max(1.0, std::abs(x));
@@ -349,7 +293,7 @@ bool at_bound(const Constant& c, double x, double unit) {
 }  // namespace
 
 Fit fit(const Law& law, const std::vector<Curve>& curves, const FitOptions& options) {
-  quiet();
+  studies::quiet_ceres();
   Fit out;
   out.law = law.name;
   const Problem problem(law, curves, options.weights);
@@ -401,7 +345,7 @@ Fit fit(const Law& law, const std::vector<Curve>& curves, const FitOptions& opti
 
   const double freedom = static_cast<double>(problem.size() - n);
   const double variance = freedom > 0 ? 2 * best.cost / freedom : 0;
-  const double quantile = freedom > 0 ? student(freedom) : 0;
+  const double quantile = freedom > 0 ? inverse::student(freedom) : 0;
   const Eigen::MatrixXd known = covariance(law, best, out, variance);
   for (std::size_t i = 0; i < n; ++i) {
     const auto at = static_cast<Eigen::Index>(i);

@@ -2,7 +2,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -259,6 +261,64 @@ TEST_CASE("drive finds amounts, and says which targets are out of reach") {
   CHECK(bounded.out.find("nearest") != std::string::npos);
   CHECK(shell.run(drive + " --amount wind").code == 2);
   CHECK(shell.run("drive block.json --targets nowhere.csv --amount pull").code == 2);
+}
+
+TEST_CASE("design moves a side until a probe is where it should be, and says what it cannot reach") {
+  Shell shell;
+  shell.write("block.json", kBlock);
+  shell.write("targets.csv", "time,tip.x\n1,2.4\n");
+  const std::string design = "design block.json --targets targets.csv --hold x0 --out out";
+  const Outcome free = shell.run(design + " --move x1=-0.5:0.5");
+  INFO(free.out << free.err);
+  CHECK(free.code == 0);
+  CHECK_THAT(free.out, Contains("block:x1 moves by") && Contains("reached"));
+  for (const char* file : {"design.json", "history.csv", "targets.csv", "scene.json", "block.msh",
+                           "design.html", "summary.json", "steps.csv"})
+    CHECK(fs::exists(shell.folder() / "out" / file));
+  CHECK(shell.run("run out/scene.json --out again --quiet").code == 0);
+  const Outcome bounded = shell.run(design + " --move x1=-0.1:0.1");
+  CHECK(bounded.code == 3);
+  CHECK_THAT(bounded.out, Contains("at a bound"));
+  for (const char* wrong : {"", " --move nose=0:1", " --move x1=0.1:0.2", " --stiffness block --length -1",
+                            " --stiffness nobody --length 1"})
+    CHECK(shell.run(design + wrong).code == 2);
+}
+
+TEST_CASE("fit finds the constants that a scene was measured with") {
+  Shell shell;
+  shell.write("block.json", kBlock);
+  // A bar of the same constants: what it answers was printed by a run.
+  REQUIRE(shell.run("run block.json --out truth --quiet --set bodies[0].materials[0].young=1234").code == 0);
+  const auto cells = [](const std::string& line) {
+    std::vector<std::string> out;
+    std::stringstream stream(line);
+    for (std::string cell; std::getline(stream, cell, ',');) out.push_back(cell);
+    return out;
+  };
+  std::stringstream table(slurp(shell.folder() / "truth/steps.csv"));
+  std::string head, line, last;
+  std::getline(table, head);
+  while (std::getline(table, line)) last = line;
+  const auto names = cells(head), values = cells(last);
+  const auto at = std::find(names.begin(), names.end(), "tip.x_m") - names.begin();
+  REQUIRE(at < static_cast<std::ptrdiff_t>(values.size()));
+  std::ostringstream data;
+  data.precision(15);
+  data << "time,tip.x\n1," << 2 + std::stod(values[static_cast<std::size_t>(at)]) << "\n";
+  shell.write("data.csv", data.str());
+  const std::string fit = "fit --scene block.json:data.csv --out out";
+  const Outcome found = shell.run(fit + " --constant bodies[0].materials[0].young");
+  INFO(found.out << found.err);
+  CHECK(found.code == 0);
+  const Json told = Json::parse(slurp(shell.folder() / "out/fit.json"));
+  CHECK(std::abs(told["constants"][0]["value"].get<double>() - 1234) < 1234e-6);
+  CHECK(fs::exists(shell.folder() / "out/index.html"));
+  CHECK(fs::exists(shell.folder() / "out/fit.csv"));
+  for (const char* wrong : {"", " --constant young", " --constant bodies[0].materials[0].young=2:1",
+                            " --constant bodies[0].materials[0].young --law gent"})
+    CHECK(shell.run(fit + wrong).code == 2);
+  CHECK(shell.run("fit").code == 2);
+  CHECK(shell.run("fit --scene block.json --constant bodies[0].materials[0].young").code == 2);
 }
 
 TEST_CASE("check judges meshes") {

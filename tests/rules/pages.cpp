@@ -45,8 +45,10 @@ std::string squeezed(const std::string& text) {
 // What runs leave behind, and places in examples.
 bool made_by_a_run(const std::string& name) {
   static const std::set<std::string> known{
-      "summary.json", "results.json", "fit.json", "fit.csv",     "drive.json", "drive.csv",
-      "tables.md",    "scene.json",   "mesh.msh", "my_mesh.msh", "index.html",
+      "summary.json", "results.json", "fit.json",     "fit.csv",     "drive.json",
+      "drive.csv",    "design.json",  "history.csv",  "targets.csv", "design.html",
+      "field.csv",    "field.vtu",    "measured.csv", "fit_1.csv",   "tables.md",
+      "scene.json",   "mesh.msh",     "my_mesh.msh",  "index.html",
       "pillow.json",  // the scene that docs/scenes.md builds up
       "tendon.cpp",   // where the worked example would go
       "abi.h"         // made by the build

@@ -170,6 +170,25 @@ TEST_CASE("bounded least squares end at the corner or edge where the gradient sa
   }
 }
 
+TEST_CASE("forces of supports, volumes and pressures are targets beside positions", "[drive]") {
+  const SceneDef scene = arm();
+  // The root holds what the arm weighs whatever the chambers do, and turns with their bend.
+  const Drive d = driven(scene, chambers(), "time,root.moment.y,a.volume\n1,-0.002,1.5e-6\n2,0.001,1.6e-6\n");
+  CHECK(d.reason.empty());
+  REQUIRE(d.steps.size() == 2);
+  const SceneDef again = value(driven_scene(scene, d));
+  RunOptions run;
+  run.threads = 1;
+  const RunResult result = run_scene(again, run);
+  REQUIRE(result.status == RunStatus::converged);
+  for (std::size_t k = 0; k < 2; ++k) {
+    CAPTURE(k, d.steps[k].distance, d.steps[k].position[0], d.steps[k].position[1]);
+    CHECK_THAT(result.records[k + 1].reactions[0].moment.y, WithinAbs(d.steps[k].position[0], 1e-7));
+    CHECK_THAT(result.records[k + 1].cavities[0].volume, WithinAbs(d.steps[k].position[1], 1e-11));
+    CHECK((d.steps[k].reached || d.steps[k].nearest));
+  }
+}
+
 TEST_CASE("what cannot be driven is refused with file, line and remedy", "[drive]") {
   const SceneDef scene = arm();
   const auto bad = [&](const std::string& text) { return refusal(parse_targets(text, "t.csv", scene)); };
