@@ -385,9 +385,10 @@ TEST_CASE(
     CHECK(pulled(*set_here) == Approx(pulled(*from_start)).epsilon(1e-6));
     // A list cell by cell is of the mesh as the scene has it.
     const char* factors = "[1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2]";
-    auto listed =
-        block(std::string(R"({"young": 1000, "poisson": 0.4, "stiffness_field": )") + factors + "}");
-    auto softer = block(std::string(R"({"young": 600, "poisson": 0.4, "stiffness_field": )") + factors + "}");
+    auto listed = block(std::string(R"({"young": 1000, "poisson": 0.4, "stiffness_field": {"values": )") +
+                        factors + "}}");
+    auto softer = block(std::string(R"({"young": 600, "poisson": 0.4, "stiffness_field": {"values": )") +
+                        factors + "}}");
     REQUIRE(set(*listed, "Young", 600).ok());
     CHECK(pulled(*listed) == Approx(pulled(*softer)).epsilon(1e-6));
   }
