@@ -263,6 +263,8 @@ TEST_CASE("a support that holds single directions is moved along them, and turne
       check_face(shift, {}, 0);
     }
     for (const std::size_t turn : turns) {
+      for (const Vec3& d : end.measured)
+        CHECK((rank == 3 || std::abs(dot(d, direction_in(s->dials()[turn].name))) < 2e-3));
       put(turn, 25);
       check_face(shift, direction_in(s->dials()[turn].name), 25 * std::numbers::pi / 180);
       put(turn, 0);

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <random>
 
+#include "engine/base/base.h"
 #include "support/worlds.h"
 
 using namespace isochor;
