@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "engine/base/text.h"
 #include "isochor/effects.h"
+#include "scenes/body_parts.h"
 #include "scenes/effects/kind.h"
 
 namespace isochor::live {
@@ -89,6 +91,18 @@ Result<void> replace(const EffectKind& kind, std::size_t i, const SceneDef& scen
   if (i >= made.size() || i >= ids.size()) return Error{"there is no such effect any more"};
   if (auto r = built.world.replace(ids[i], std::move(made[i])); !r) return r;
   return built.world.compile();
+}
+
+// Of a body's cells those of the mesh before it was refined; empty: it was not.
+std::span<const Index> parents_of(const BuiltScene& built, std::size_t body) {
+  return body < built.parents.size() ? std::span<const Index>(built.parents[body]) : std::span<const Index>();
+}
+
+// Cells of a body's mesh as the scene has it, which its lists of numbers count.
+std::size_t cells_given(const BuiltScene& built, std::size_t body) {
+  const auto parents = parents_of(built, body);
+  if (parents.empty()) return static_cast<std::size_t>(built.world.mesh(built.bodies[body]).cell_count());
+  return static_cast<std::size_t>(*std::max_element(parents.begin(), parents.end())) + 1;
 }
 
 }  // namespace
@@ -211,29 +225,20 @@ void Dials::add_amounts() {
   }
 }
 
-// Three of the way and three of the turn, of which each is set with what the others say.
+// Ways and turns, of which each is set with what the others say.
 void Dials::add_poses(double extent) {
   constexpr double degree = std::numbers::pi / 180;
   for (std::size_t thing = 0; thing < poses_.count(); ++thing) {
     const double most = round_up(std::max(0.5 * extent, 1.2 * poses_.reach(thing)));
-    for (int k = 0; k < 6; ++k) {
-      const bool turn = k >= 3;
-      const int axis = k % 3;
-      const double unit = turn ? degree : 1;
-      const auto component = [turn, axis](Placement& p) -> double& {
-        return (turn ? p.turn : p.shift)[axis];
-      };
-      const std::string name = (turn ? "turned about " : "along ") + std::string(1, "xyz"[axis]);
-      const double high = turn ? 180 : most;
+    for (const PoseAxis& axis : poses_.axes(thing)) {
+      const double unit = axis.turn ? degree : 1;
+      const double high = axis.turn ? 180 : most;
       add(
-          {"Pose of " + poses_.name(thing), name, turn ? "\u00b0" : "m", -high, high, false},
-          [this, thing, component, unit](double t) {
-            Placement p = poses_.wanted(thing, t);
-            return component(p) / unit;
-          },
-          [this, thing, component, unit](double value, SceneDef&, BuiltScene& built) -> Result<void> {
+          {"Pose of " + poses_.name(thing), axis.name, axis.turn ? "\u00b0" : "m", -high, high, false},
+          [this, thing, &axis, unit](double t) { return axis.of(poses_.wanted(thing, t)) / unit; },
+          [this, thing, &axis, unit](double value, SceneDef&, BuiltScene& built) -> Result<void> {
             Placement p = poses_.wanted(thing, built.world.time());
-            component(p) = value * unit;
+            axis.set(p, value * unit);
             poses_.want(thing, p);
             return {};
           });
@@ -264,18 +269,24 @@ void Dials::add_materials() {
       const MaterialDef& def = scene_.bodies[b].materials[m];
       std::string group = "Material of " + scene_.bodies[b].name;
       if (!def.region.empty()) group += ", " + def.region;
+      // The material made anew of a definition that `change` has changed.
+      const auto anew = [b, m](SceneDef& scene, BuiltScene& built, const auto& change) -> Result<void> {
+        MaterialDef& here = scene.bodies[b].materials[m];
+        change(here);
+        auto numbers = refined_numbers(here, scene.folder, parents_of(built, b));
+        if (!numbers) return numbers.failure();
+        auto made = make_material(numbers.value(), scene.folder, &built.world.mesh(built.bodies[b]));
+        if (!made) return made.failure();
+        auto r = built.world.set_material(built.bodies[b], here.region, made.value());
+        return r ? built.world.compile() : r;
+      };
       const auto constant = [&](const char* what, const char* unit, double low, double high, bool logarithmic,
                                 double ElasticConstants::*member) {
         add(
             {group, what, unit, low, high, logarithmic},
             [&def, member](double) { return def.constants.*member; },
-            [b, m, member](double value, SceneDef& scene, BuiltScene& built) -> Result<void> {
-              MaterialDef& here = scene.bodies[b].materials[m];
-              here.constants.*member = value;
-              auto made = make_material(here, scene.folder, &built.world.mesh(built.bodies[b]));
-              if (!made) return made.failure();
-              auto r = built.world.set_material(built.bodies[b], here.region, made.value());
-              return r ? built.world.compile() : r;
+            [anew, member](double value, SceneDef& scene, BuiltScene& built) {
+              return anew(scene, built, [&](MaterialDef& here) { here.constants.*member = value; });
             });
       };
       const ElasticConstants& c = def.constants;
@@ -286,6 +297,16 @@ void Dials::add_materials() {
       if (c.mu > 0) {
         const double mu = round_up(0.7 * c.mu);
         constant("Shear modulus", "Pa", mu / 20, mu * 20, true, &ElasticConstants::mu);
+      }
+      // Laws with constants of their own: all of them together.
+      if (c.young <= 0 && c.mu <= 0 && !def.stiffness_field.given()) {
+        add(
+            {group, "Stiffness, times", "", 0.05, 20, true}, [](double) { return 1.0; },
+            [anew, b](double value, SceneDef& scene, BuiltScene& built) {
+              const std::size_t cells = cells_given(built, b);
+              return anew(scene, built,
+                          [&](MaterialDef& here) { here.stiffness_field.values.assign(cells, value); });
+            });
       }
       const bool by_ratio = c.mu <= 0 && !def.poisson_field.given();
       if (by_ratio) constant("Poisson's ratio", "", 0, 0.5, false, &ElasticConstants::poisson);

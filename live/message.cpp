@@ -206,7 +206,11 @@ std::string picture_message(const Simulation& simulation, const Shown& shown, co
   head["fibers"] = fibers.size();
   head["values"] = values ? values->size() : 0;
   Writer out(head);
-  out.points(shown.frame.positions);
+  // From rest: places far from the origin, and motions far smaller than the body, keep their digits.
+  for (std::size_t v = 0; v < s.rest.size(); ++v) {
+    const Vec3 moved = shown.frame.positions[v] - s.rest[v];
+    for (int k = 0; k < 3; ++k) out.f32(moved[k]);
+  }
   for (std::size_t i = 0; values && i < values->size(); ++i) out.f32((*values)[i]);
   for (const auto& line : shown.frame.lines) out.points(line);
   out.points(shown.frame.probes);

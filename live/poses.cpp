@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "live/turns.h"
 #include "scenes/body_parts.h"
@@ -29,8 +30,67 @@ bool within(const Vec3& p, const std::array<Vec3, 2>& box) {
   return true;
 }
 
-// The middle of what a support names; of the whole body where it names points or regions.
-Vec3 middle_of(const Mesh& mesh, const Selection& where) {
+// "z", or "(0.6, 0, 0.8)".
+std::string name_of(const Vec3& direction) {
+  std::string out;
+  for (int k = 0; k < 3; ++k) {
+    if (direction[k] == 1) return std::string(1, "xyz"[k]);
+    char text[16];
+    std::snprintf(text, sizeof text, "%.3g", std::abs(direction[k]) < 5e-4 ? 0.0 : direction[k]);
+    out += (k == 0 ? "(" : ", ") + std::string(text);
+  }
+  return out + ")";
+}
+
+// Of unit length, without its parts along the others, its largest part positive; zero where nothing is left.
+Vec3 apart(Vec3 direction, const std::vector<Vec3>& others) {
+  const double size = length(direction);
+  if (!(size > 0)) return {};
+  direction = (1 / size) * direction;
+  for (const Vec3& other : others) direction -= dot(direction, other) * other;
+  const double left = length(direction);
+  if (left < 1e-6) return {};
+  int largest = 0;
+  for (int k = 1; k < 3; ++k) {
+    if (std::abs(direction[k]) > 1.000001 * std::abs(direction[largest])) largest = k;
+  }
+  return ((direction[largest] < 0 ? -1 : 1) / left) * direction;
+}
+
+const std::vector<Vec3> kAxes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+
+// Orthonormal directions that span those asked for; axes of coordinates among them where they are held.
+std::vector<Vec3> span_of(const std::vector<Vec3>& asked) {
+  std::vector<Vec3> span, out;
+  for (const Vec3& direction : asked) {
+    const Vec3 next = apart(direction, span);
+    if (length(next) > 0) span.push_back(next);
+  }
+  for (const Vec3& axis : kAxes) {
+    if (length(apart(axis, span)) == 0) out.push_back(axis);
+  }
+  for (const Vec3& direction : span) {
+    const Vec3 next = apart(direction, out);
+    if (length(next) > 0) out.push_back(next);
+  }
+  return out;
+}
+
+// A plane that is held turns about its normal. Along one direction alone a turn would tilt what is held, but
+// not the direction: what slides there would not stay on the tilted plane.
+std::vector<PoseAxis> axes_of(const std::vector<Vec3>& held) {
+  std::vector<PoseAxis> out;
+  for (const Vec3& d : held) out.push_back({"along " + name_of(d), d, false});
+  std::vector<Vec3> about;
+  if (held.size() == 3) about = held;
+  if (held.size() == 2) about = span_of({cross(held[0], held[1])});
+  for (const Vec3& d : about) out.push_back({"turned about " + name_of(d), d, true});
+  return out;
+}
+
+// The middle of what a support names; of the whole body where it names regions or what is nearest.
+Vec3 middle_of(const Mesh& mesh, const DirichletDef& def) {
+  const Selection& where = def.where;
   Vec3 sum{};
   double count = 0;
   const auto add = [&](const std::vector<Index>& nodes) {
@@ -52,6 +112,8 @@ Vec3 middle_of(const Mesh& mesh, const Selection& where) {
       if (within(mesh.nodes[n], box)) add({static_cast<Index>(n)});
     }
   }
+  for (const Vec3& p : def.points) sum += p;
+  count += static_cast<double>(def.points.size());
   if (count == 0) {
     for (const Vec3& p : mesh.nodes) sum += p;
     count = static_cast<double>(mesh.nodes.size());
@@ -73,15 +135,16 @@ void Poses::add_obstacles(const SceneDef& scene, const BuiltScene& built) {
     const ContactDef& def = scene.contacts[i];
     if (!def.against.empty()) continue;  // a free body, which is where forces put it
     const Obstacle& o = built.obstacles[i];
-    things_.push_back({"obstacle of " + def.name, &contacts_kind, i, o.position, o.motion, o.motion, {}});
+    things_.push_back(
+        {"obstacle of " + def.name, &contacts_kind, i, o.position, o.motion, o.motion, axes_of(kAxes), {}});
   }
 }
 
 void Poses::add_supports(const SceneDef& scene, const BuiltScene& built) {
   for (std::size_t i = 0; i < scene.dirichlet.size(); ++i) {
     const DirichletDef& def = scene.dirichlet[i];
-    // What holds one direction has no pose, and what is displaced by an amount has a slider for that.
-    if (!def.directions.empty() || length(def.displacement) > 0 || def.angle != 0) continue;
+    // What is displaced by an amount has a slider for that.
+    if (length(def.displacement) > 0 || def.angle != 0) continue;
     PoseTrack said = def.bone;
     if (said.keys.empty() && !said.file.empty()) {
       auto read = read_poses(path_in(scene.folder, said.file));
@@ -90,8 +153,14 @@ void Poses::add_supports(const SceneDef& scene, const BuiltScene& built) {
     }
     const auto body = static_cast<std::size_t>(def.where.body);
     const Mesh& mesh = built.world.mesh(built.bodies[body]);
-    things_.push_back(
-        {"support " + def.name, &dirichlet_kind, i, middle_of(mesh, def.where), said, said, {}});
+    things_.push_back({"support " + def.name,
+                       &dirichlet_kind,
+                       i,
+                       middle_of(mesh, def),
+                       said,
+                       said,
+                       axes_of(def.directions.empty() ? kAxes : span_of(def.directions)),
+                       {}});
   }
 }
 

@@ -1,5 +1,6 @@
 // Where obstacles and supports are put by hand: moved, and turned about their middle, from where they are at
-// rest.
+// rest. A support that holds single directions is moved along those alone, and turned in the plane of two:
+// what it leaves free, no pose can give.
 #pragma once
 
 #include <optional>
@@ -16,6 +17,16 @@ struct Placement {
   Vec3 turn{};   // axis times angle [rad]
 };
 
+// One of the numbers that say where something is: a way along a direction [m], or a turn about it [rad].
+struct PoseAxis {
+  std::string name;
+  Vec3 direction{};  // of unit length
+  bool turn = false;
+
+  double of(const Placement& p) const { return dot(turn ? p.turn : p.shift, direction); }
+  void set(Placement& p, double value) const { (turn ? p.turn : p.shift) += (value - of(p)) * direction; }
+};
+
 class Poses {
  public:
   // `extent`: of the bodies [m]; a step moves what is put elsewhere by a part of it.
@@ -23,6 +34,8 @@ class Poses {
 
   std::size_t count() const { return things_.size(); }
   const std::string& name(std::size_t thing) const { return things_[thing].name; }
+  // In which ways it can be moved.
+  const std::vector<PoseAxis>& axes(std::size_t thing) const { return things_[thing].axes; }
   // The largest shift that the scene itself has for it [m].
   double reach(std::size_t thing) const;
   // Where it is wanted, or where the scene has it at that time.
@@ -43,6 +56,7 @@ class Poses {
     std::size_t place = 0;  // in the list of its kind
     Vec3 middle{};          // at rest [m]
     PoseTrack said, now;    // by the scene, and what counts
+    std::vector<PoseAxis> axes;
     std::optional<Placement> wanted;
   };
   void add_obstacles(const SceneDef& scene, const BuiltScene& built);

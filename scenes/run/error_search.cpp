@@ -1,7 +1,6 @@
 #include "scenes/run/error_search.h"
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +8,7 @@
 #include <limits>
 
 #include "engine/base/available_memory.h"
+#include "engine/base/chars.h"
 #include "engine/base/text.h"
 #include "scenes/run/error_forecast.h"
 #include "scenes/run/error_places.h"
@@ -424,7 +424,7 @@ Result<double> parse_error_demand(const std::string& text) {
   if (percentage) digits.pop_back();
   while (!digits.empty() && digits.back() == ' ') digits.pop_back();
   double value = 0;
-  const auto [stop, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const auto [stop, code] = isochor::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool whole = code == std::errc() && stop == digits.data() + digits.size();
   if (percentage) value *= 0.01;
   if (whole && value > 0 && value < 1) return value;

@@ -1,9 +1,11 @@
 // Several viewers, one of whom drives; what is too much, too often or not allowed.
 #include "live/hub.h"
 
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "catch.h"
+#include "live/message.h"
 #include "scene/small_scene.h"
 
 using namespace isochor;
@@ -67,6 +69,38 @@ TEST_CASE("the first viewer drives, another one may take over, and the driver's 
   (void)hub.scene(first, later);
   CHECK(hub.command(first, R"({"do": "step"})", later).status == 200);
   CHECK(hub.command(third, R"({"do": "step"})", later).status == 410);
+}
+
+TEST_CASE(
+    "pictures tell how far points have moved, also where that is less than a float has of their place") {
+  for (const double load : {100.0, 1e-8}) {
+    // A thousand lengths from the origin, where a float counts in steps of 1e-4.
+    auto scene = test::small_scene({"bodies[0].mesh.box.lower=[2000, 0, 0]",
+                                    "bodies[0].mesh.box.upper=[2002, 1, 1]", "probes=[]", "metrics=[]"});
+    scene.tractions[0].traction.x = load;
+    auto made = Simulation::make(scene, {});
+    REQUIRE(made.ok());
+    Simulation& s = *made.value();
+    for (int i = 0; i < 3; ++i) REQUIRE(s.advance() == StepEnd::done);
+    Shown shown;
+    static_cast<Picture&>(shown) = s.picture(false);
+    const std::string message = picture_message(s, shown, {}, {});
+    const Answer answer{200, message, true};
+    REQUIRE(head_of(answer)["vertices"] == s.shape().rest.size());
+    std::uint32_t head = 0;
+    std::memcpy(&head, message.data(), 4);
+    double most = 0;
+    for (std::size_t v = 0; v < s.shape().rest.size(); ++v) {
+      for (int k = 0; k < 3; ++k) {
+        float got = 0;
+        std::memcpy(&got, message.data() + 4 + head + 4 * (3 * v + static_cast<std::size_t>(k)), 4);
+        const double moved = shown.frame.positions[v][k] - s.shape().rest[v][k];
+        CHECK(static_cast<double>(got) == Approx(moved).epsilon(1e-6).margin(1e-30));
+        most = std::max(most, std::abs(moved));
+      }
+    }
+    CHECK(most > 1e-4 * load);
+  }
 }
 
 TEST_CASE("who only looks on changes nothing") {

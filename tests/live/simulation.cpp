@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <random>
 
 #include "catch.h"
 #include "scene/small_scene.h"
@@ -160,6 +162,139 @@ TEST_CASE("a support is moved and turned by hand, little by little, and a reset 
   }
 }
 
+namespace {
+
+struct HeldEnd {
+  std::string text;            // of the directions, for the scene
+  std::vector<Vec3> given;     // as they are
+  std::vector<Vec3> measured;  // orthonormal, of what they span
+};
+
+Vec3 unit(const Vec3& v) {
+  return (1 / std::sqrt(dot(v, v))) * v;
+}
+
+// One to three directions of any lengths, with more of them than are needed now and then.
+HeldEnd random_end(std::mt19937& random, int rank) {
+  std::uniform_real_distribution<double> number(-1, 1);
+  const auto vector = [&] { return Vec3{number(random), number(random), number(random)}; };
+  HeldEnd end;
+  const Vec3 a = vector(), b = vector();
+  const Vec3 normal = unit(cross(a, b));
+  if (rank == 1) end.measured = {unit(a)};
+  if (rank == 2) end.measured = {unit(a), cross(normal, unit(a))};
+  if (rank == 3) end.measured = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  end.given = {3.0 * a};
+  if (rank > 1) end.given.push_back(b);
+  if (rank > 2) end.given.push_back(0.5 * normal + 0.2 * a);
+  if (number(random) > 0) end.given.push_back(end.given.front() + (rank > 1 ? b : Vec3{}));
+  for (const Vec3& d : end.given) {
+    end.text += (end.text.empty() ? "[[" : ", [") + std::to_string(d.x) + ", " + std::to_string(d.y) + ", " +
+                std::to_string(d.z) + "]";
+  }
+  end.text += "]";
+  return end;
+}
+
+// Of the dials of its pose, in their order.
+std::vector<std::size_t> pose_of(const Simulation& s, const std::string& name, const std::string& begins) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < s.dials().size(); ++i) {
+    const Dial& d = s.dials()[i];
+    if (d.group == "Pose of " + name && d.name.rfind(begins, 0) == 0) out.push_back(i);
+  }
+  return out;
+}
+
+// What the name of a dial says: "along z", "turned about (0.6, 0, 0.8)".
+Vec3 direction_in(const std::string& name) {
+  if (name.back() != ')')
+    return {name.back() == 'x' ? 1.0 : 0, name.back() == 'y' ? 1.0 : 0, name.back() == 'z' ? 1.0 : 0};
+  Vec3 d{};
+  REQUIRE(std::sscanf(name.c_str() + name.find('('), "(%lf, %lf, %lf)", &d.x, &d.y, &d.z) == 3);
+  return unit(d);
+}
+
+}  // namespace
+
+TEST_CASE("a support that holds single directions is moved along them, and turned in the plane of two") {
+  std::mt19937 random(20);
+  for (int trial = 0; trial < 9; ++trial) {
+    const int rank = 1 + trial % 3;
+    const HeldEnd end = random_end(random, rank);
+    INFO(end.text);
+    // The other end is held by springs: it follows, and no direction is free.
+    auto s = make(
+        {"tractions=[]", "metrics=[]",
+         R"(dirichlet=[{"name": "wall", "where": {"surfaces": "x0"}, "treatment": "stiffness", "stiffness": 50},
+                       {"name": "end", "where": {"surfaces": "x1"}, "directions": )" +
+             end.text + "}]"});
+    const std::uint64_t beginning = s->picture(false).hash;
+    const auto ways = pose_of(*s, "support end", "along"), turns = pose_of(*s, "support end", "turned about");
+    REQUIRE(ways.size() == static_cast<std::size_t>(rank));
+    REQUIRE(turns.size() == (rank == 1 ? 0U : rank == 2 ? 1U : 3U));
+    std::vector<double> wanted;
+    const auto put = [&](std::size_t dial, double value) {
+      Command c = plain(Action::set);
+      c.control = static_cast<int>(dial);
+      c.value = value;
+      REQUIRE(s->apply(c).ok());
+      for (int i = 0; i < 60; ++i) REQUIRE(s->advance() == StepEnd::done);
+      CHECK(s->settled());
+    };
+    // The face x = 2 is where a pose has it, in the directions that are held.
+    const auto check_face = [&](const Vec3& shift, const Vec3& axis, double angle) {
+      const PageFrame frame = s->picture(false).frame;
+      for (std::size_t v = 0; v < s->shape().rest.size(); ++v) {
+        const Vec3 X = s->shape().rest[v];
+        if (X.x != 2) continue;
+        const Vec3 r = X - Vec3{2, 0.5, 0.5};
+        const Vec3 to = Vec3{2, 0.5, 0.5} + shift + std::cos(angle) * r + std::sin(angle) * cross(axis, r) +
+                        ((1 - std::cos(angle)) * dot(axis, r)) * axis;
+        for (const Vec3& d : end.measured) CHECK(dot(d, frame.positions[v] - to) == Approx(0).margin(1e-3));
+      }
+    };
+    Vec3 shift{};
+    for (std::size_t k = 0; k < ways.size(); ++k) {
+      const double way = 0.2 - 0.07 * static_cast<double>(k);
+      put(ways[k], way);
+      shift += way * direction_in(s->dials()[ways[k]].name);
+      CHECK(s->picture(false).dials[ways[k]] == way);
+      check_face(shift, {}, 0);
+    }
+    for (const std::size_t turn : turns) {
+      for (const Vec3& d : end.measured)
+        CHECK((rank == 3 || std::abs(dot(d, direction_in(s->dials()[turn].name))) < 2e-3));
+      put(turn, 25);
+      check_face(shift, direction_in(s->dials()[turn].name), 25 * std::numbers::pi / 180);
+      put(turn, 0);
+    }
+    REQUIRE(s->apply(plain(Action::reset)).ok());
+    CHECK(s->picture(false).hash == beginning);
+    CHECK(s->picture(false).dials[ways[0]] == 0);
+  }
+}
+
+TEST_CASE("dials of a pose are named after the axes that are held, and after the amount where there is one") {
+  const auto names = [](const std::string& rest) {
+    auto s = make({"metrics=[]", R"(dirichlet=[{"name": "wall", "where": {"surfaces": "x0"}},
+      {"name": "end", "where": {"surfaces": "x1"}, )" +
+                                     rest + "}]"});
+    std::string out;
+    for (const Dial& d : s->dials()) {
+      if (d.group == "Pose of support end" || d.group == "Supports") out += d.name + "; ";
+    }
+    return out;
+  };
+  CHECK(names(R"("directions": "x")") == "along x; ");
+  CHECK(names(R"("directions": [[0, 0, -2], [1, 0, -1]])") == "along x; along z; turned about y; ");
+  CHECK(names(R"("directions": [[-3, 0, -4]])") == "along (0.6, 0, 0.8); ");
+  CHECK(names(R"("directions": "yx")") == "along x; along y; turned about z; ");
+  CHECK(names(R"("directions": "xyz")") ==
+        "along x; along y; along z; turned about x; turned about y; turned about z; ");
+  CHECK(names(R"("directions": "x", "displacement": [0.1, 0, 0])") == "end; ");
+}
+
 TEST_CASE("an obstacle is moved by hand, also one that moves by itself; the picture follows the world") {
   for (const bool moving : {false, true}) {
     const std::string motion =
@@ -229,6 +364,36 @@ TEST_CASE("what is out of bounds is refused, and nothing has changed") {
   CHECK_FALSE(s->picture(false).message.empty());
   REQUIRE(s->advance() == StepEnd::done);
   CHECK(s->picture(false).message.empty());
+}
+
+TEST_CASE(
+    "laws with constants of their own have one slider for all of them; refined bodies keep their numbers") {
+  for (const std::string& refine : {std::string(), std::string(R"("refine": 1, )")}) {
+    const auto block = [&](const std::string& material) {
+      return make({"metrics=[]",
+                   R"(bodies=[{"name": "block", )" + refine +
+                       R"("mesh": {"box": {"upper": [2, 1, 1], "divisions": [2, 1, 1]}}, "materials": [)" +
+                       material + "]}]"});
+    };
+    const auto pulled = [](Simulation& s) {
+      for (int i = 0; i < 4; ++i) REQUIRE(s.advance() == StepEnd::done);
+      return tip(s, 0);
+    };
+    // Half the stiffness is that of a scene that has it from the start.
+    auto set_here = block(R"({"law": "mooney_rivlin", "c1": 150, "c2": 50, "poisson": 0.5})");
+    auto from_start = block(R"({"law": "mooney_rivlin", "c1": 75, "c2": 25, "poisson": 0.5})");
+    CHECK(set_here->picture(false).dials[dial(*set_here, "Stiffness, times")] == 1);
+    REQUIRE(set(*set_here, "Stiffness, times", 0.5).ok());
+    CHECK(pulled(*set_here) == Approx(pulled(*from_start)).epsilon(1e-6));
+    // A list cell by cell is of the mesh as the scene has it.
+    const char* factors = "[1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2]";
+    auto listed = block(std::string(R"({"young": 1000, "poisson": 0.4, "stiffness_field": {"values": )") +
+                        factors + "}}");
+    auto softer = block(std::string(R"({"young": 600, "poisson": 0.4, "stiffness_field": {"values": )") +
+                        factors + "}}");
+    REQUIRE(set(*listed, "Young", 600).ok());
+    CHECK(pulled(*listed) == Approx(pulled(*softer)).epsilon(1e-6));
+  }
 }
 
 TEST_CASE("volume rows that are not there: a Poisson's ratio of one half is refused by the world") {

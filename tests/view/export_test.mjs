@@ -97,6 +97,31 @@ const tests = {
     await page.waitFor('isochorLive.frame.field === isochorLive.asked'); // stresses come as well
     await finish(page);
   },
+
+  async 'a support that holds one direction is led along it by its slider, in the browser as anywhere'() {
+    const file = join(folder, 'led.json');
+    writeFileSync(file, JSON.stringify({
+      name: 'led', analysis: { steps: 2 },
+      bodies: [{ name: 'block', mesh: { box: { upper: [2, 1, 1], divisions: [2, 1, 1] } }, materials: [{ young: 1000, poisson: 0.5 }] }],
+      dirichlet: [{ name: 'wall', where: { surfaces: 'x0' } }, { name: 'end', where: { surfaces: 'x1' }, directions: [[0, 3, 4]] }],
+    }));
+    const page = await open(exported('led', file));
+    await page.waitFor('isochorLive.frame.info.settled');
+    const led = await dial(page, 'Pose of support end', 'along (0, 0.6, 0.8)');
+    assert.ok(led >= 0, await page.evaluate(`isochorLive.run.head.dials.map((d) => d.group + ': ' + d.name).join()`));
+    assert.equal(await send(page, { do: 'set', control: led, value: 0.25 }), null);
+    await page.waitFor(`isochorLive.frame.info.settled && isochorLive.frame.info.dials[${led}] === 0.25`);
+    // Every point of the end has gone as far as that, and some have slid across.
+    const ways = await page.evaluate(`(() => {
+      const { run, frame: { moved } } = isochorLive, right = Math.max(...run.rest.filter((_, i) => i % 3 === 0)), out = [];
+      for (let v = 0; v < run.bodyVertices; ++v) if (run.rest[3 * v] > right - 1e-6) out.push([0.6 * moved[3 * v + 1] + 0.8 * moved[3 * v + 2], moved[3 * v]]);
+      return out;
+    })()`);
+    assert.ok(ways.length >= 4);
+    for (const [along] of ways) assert.ok(Math.abs(along - 0.25) < 1e-6, `${along}`);
+    assert.ok(ways.some(([, across]) => Math.abs(across) > 1e-3));
+    await finish(page);
+  },
 };
 
 let failures = 0;

@@ -310,6 +310,50 @@ const tests = {
     assert.deepEqual(await live.end(), { code: 0, signal: null });
   },
 
+  async 'a roller has the ways that it holds, words stand apart, and what hardly moves is seen to move'() {
+    const file = join(folder, 'roller.json');
+    writeFileSync(file, JSON.stringify({
+      name: 'roller', analysis: { steps: 2 }, gravity: [0, 0, -9.8],
+      bodies: [{ name: 'beam', mesh: { box: { lower: [500, 0, 0], upper: [502, 0.5, 0.5], divisions: [8, 2, 2] } }, materials: [{ young: 1e10, poisson: 0.3 }] }],
+      dirichlet: [{ name: 'wall', where: { surfaces: 'x0' } }, { name: 'roller', where: { surfaces: 'x1' }, directions: 'z' }],
+      probes: ['one', 'two', 'three'].map((name) => ({ name, point: [501, 0.25, 0.5] })),
+    }));
+    const live = await Live.start(file);
+    const page = await view(live);
+    await page.waitFor('isochorLive.frame.info.settled');
+    // It sags by less than a float has of a place 500 m away.
+    const sag = `(() => { const v = isochorLive, values = v.run.values(v.frame, v.fields.find((f) => f.name === 'displacement')); return [Math.max(...values), new Set(values).size, values.length]; })()`;
+    const [most, different, all] = await page.evaluate(sag);
+    assert.ok(most > 1e-9 && most < 1e-5 && different > 0.5 * all, `${most}, ${different} of ${all}`);
+    const rows = `isochorLive.controls.dials.rows.filter((row) => row.dial.group === 'Pose of support roller')`;
+    assert.deepEqual(await page.evaluate(`${rows}.map((row) => row.dial.name)`), ['along z']);
+    await page.evaluate(`{ const { number } = ${rows}[0]; number.value = 50 / 1000 * ${rows}[0].factor; number.dispatchEvent(new Event('change')); }`);
+    await page.waitFor(`isochorLive.frame.info.dials[${rows}[0].index] === 0.05 && isochorLive.frame.info.settled`);
+    assert.ok(Math.abs((await page.evaluate(sag))[0] - 0.05) < 0.005);
+    // Forces of two hands where three probes are: no word over another.
+    await page.evaluate(`(async () => {
+      const { run, frame } = isochorLive, [px, py, pz] = frame.probes;
+      const away = (t) => Math.hypot(...[px, py, pz].map((v, k) => v - frame.positions[3 * run.triangles[3 * t] + k]));
+      const all = [...run.triangles.keys()].filter((c) => c % 3 === 0).map((c) => c / 3).sort((a, b) => away(a) - away(b));
+      for (const triangle of all.slice(0, 3)) await isochorLive.send({ do: 'pull', triangle, weights: [0.98, 0.01, 0.01] });
+    })()`);
+    await page.waitFor('isochorLive.frame.info.handles.length === 3 && isochorLive.frame.info.settled');
+    await page.evaluate(`(async () => { for (const h of isochorLive.frame.info.handles) await isochorLive.send({ do: 'move', handle: h.id, to: h.to.map((v, k) => v + (k === 2 ? 0.02 : 0)) }); })()`);
+    await page.waitFor('isochorLive.frame.info.settled && isochorLive.frame.info.handles.every((h) => h.force > 0)');
+    await page.evaluate('isochorLive.stage.draw(), isochorLive.hand.place()');
+    const words = await page.evaluate(`[...document.querySelectorAll('.probe:not([hidden]), .hand text, .stamp, .legend, .tools')].map((node) => {
+      const { left, right, top, bottom } = node.getBoundingClientRect();
+      return { text: node.textContent, left, right, top, bottom };
+    }).filter((b) => b.right > b.left)`);
+    assert.ok(words.filter((w) => /N$/.test(w.text)).length === 3 && words.some((w) => w.text === 'one'), JSON.stringify(words));
+    for (const a of words) for (const b of words) {
+      if (a === b) continue;
+      assert.ok(a.right <= b.left + 1 || b.right <= a.left + 1 || a.bottom <= b.top + 1 || b.bottom <= a.top + 1, `${a.text} over ${b.text}`);
+    }
+    await finish(page);
+    await live.end();
+  },
+
   async 'a film of what moves'() {
     const page = await viewShared();
     await page.evaluate('HTMLAnchorElement.prototype.click = function () { window.isochorSaved = this.download; }, true');

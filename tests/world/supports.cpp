@@ -1,7 +1,9 @@
 // Prescribed motions: oblique directions, several effects on one node, rotations.
 #include <cmath>
 #include <numbers>
+#include <random>
 
+#include "engine/base/base.h"
 #include "support/worlds.h"
 
 using namespace isochor;
@@ -139,4 +141,52 @@ TEST_CASE("the way of a bone is summed over its keyframes") {
   CHECK(turned(track, 0.5, 1.5) == Approx(0.5 * std::numbers::pi).epsilon(1e-7));
   CHECK(turned(track, 3, 9) == Approx(0.5 * std::numbers::pi).epsilon(1e-7));
   CHECK(turned(track, 4, 9) == 0);
+}
+
+TEST_CASE("a pose moves a support in the directions that it holds, and in no other") {
+  // The judge: a support whose definition says the same motion, for single directions and planes.
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (int trial = 0; trial < 12; ++trial) {
+    const auto vector = [&] { return Vec3{number(random), number(random), number(random)}; };
+    const bool plane = trial % 2 == 1;
+    DirichletDef held;
+    held.name = "held";
+    held.where.surfaces = {"x1"};
+    held.directions = {vector()};
+    if (plane) held.directions.push_back(vector());
+    if (trial % 3 == 2) held.treatment = SupportTreatment::multiplier;
+    DirichletDef said = held;
+    said.displacement = 0.05 * vector();
+    said.amount = Curve::ramp(1);
+    said.axis = plane ? cross(held.directions[0], held.directions[1]) : Vec3{};
+    said.angle = plane ? 0.4 : 0;
+    CAPTURE(trial);
+    const auto make = [&](DirichletDef def, EffectId& id) {
+      World world = make_world(static_options());
+      def.where.body = add_body(world, box({2, 2, 2}), Element::tet4, neo_hookean(1e5, 0.5), 1000);
+      add_volume(world, def.where.body);
+      hold(world, def.where.body, {"x0"});
+      id = value(world.add(dirichlet(def)));
+      return world;
+    };
+    EffectId by_pose{}, by_amount{};
+    World a = make(held, by_pose), b = make(said, by_amount);
+    Pose pose;
+    pose.position = said.displacement;
+    if (plane) {
+      const Vec3 axis = (std::sin(0.5 * said.angle) / norm(said.axis)) * said.axis;
+      pose.rotation = {std::cos(0.5 * said.angle), axis.x, axis.y, axis.z};
+    }
+    value(a.set_pose(by_pose, pose));
+    must_advance(a);
+    must_advance(b);
+    const auto x = a.positions(BodyId{}), y = b.positions(BodyId{});
+    double moved = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      CHECK_THAT(norm(x[i] - y[i]), Catch::Matchers::WithinAbs(0, 1e-8));
+      moved = std::max(moved, norm(x[i] - a.mesh(BodyId{}).nodes[i]));
+    }
+    CHECK(moved > 1e-3);
+  }
 }

@@ -120,6 +120,7 @@ export class Overlays {
     this.object.add(this.arrows.object);
     this.contacts = new Dots(this.object, [232, 120, 30], 9);
     this.probes = new Dots(this.object, [20, 24, 30], 12);
+    this.placed = []; // boxes of labels that are to be seen
     this.labels = run.head.probes.map((name) => {
       const label = document.createElement('span');
       label.className = 'probe';
@@ -175,6 +176,7 @@ export class Overlays {
 
   /** Beside their points, over neither each other nor what else stands on the picture. */
   placeLabels(camera, host, moving) {
+    if (!moving) this.boxes = null;
     if (this.labels.length === 0) return;
     const [width, height] = [host.clientWidth, host.clientHeight];
     const p = new THREE.Vector3();
@@ -187,10 +189,12 @@ export class Overlays {
       if (!label.size) return null;
       return { x: ((p.x + 1) / 2) * width, y: ((1 - p.y) / 2) * height, ...label.size };
     });
-    placeLabels(points, { width, height }, this.taken(host, moving)).forEach((place, index) => {
+    this.placed = [];
+    placeLabels(points, { width, height }, this.taken(host)).forEach((place, index) => {
       const label = this.labels[index];
       label.hidden = place === null;
       if (place === null) return;
+      this.placed.push({ ...place, ...label.size });
       const transform = `translate(${place.x}px, ${place.y}px)`;
       if (label.style.transform !== transform) label.style.transform = transform;
     });
@@ -205,13 +209,13 @@ export class Overlays {
   }
 
   /** Boxes of the stage where no label may stand; looked up at rest, since asking the browser takes time. */
-  taken(host, moving) {
-    if (this.boxes && moving) return this.boxes;
+  taken(host) {
+    if (this.boxes) return this.boxes;
     const from = host.getBoundingClientRect();
-    this.boxes = [...host.querySelectorAll('.stamp, .legend, .tools')].filter((node) => !node.hidden && node.offsetWidth > 0).map((node) => {
+    this.boxes = [...host.querySelectorAll('.stamp, .legend, .tools, .arrow-key, .triad, .said')].map((node) => {
       const box = node.getBoundingClientRect();
       return { x: box.left - from.left, y: box.top - from.top, width: box.width, height: box.height };
-    });
+    }).filter((box) => box.width > 0);
     return this.boxes;
   }
 }

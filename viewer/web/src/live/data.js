@@ -60,7 +60,9 @@ export class LiveData {
   /** A picture as the server sends it. */
   read(message) {
     const { head } = message;
-    const positions = this.toWorld(message.floats(3 * head.vertices));
+    // From rest [m], so that motions far smaller than the body keep their digits.
+    const moved = message.floats(3 * head.vertices);
+    const positions = this.rest.map((v, i) => v + moved[i] * this.scale);
     const values = head.field === null ? null : message.floats(head.values);
     const lines = head.lines.map((count) => this.toWorld(message.floats(3 * count)));
     const probes = this.toWorld(message.floats(3 * head.probes));
@@ -71,7 +73,7 @@ export class LiveData {
       for (let k = 0; k < 3; ++k) forces[i + k] = (forces[i + k] - this.center[k]) * this.scale;
     }
     const fibers = this.toWorld(message.floats(3 * head.fibers));
-    return { info: head, positions, field: head.field, given: values, lines, probes, contacts, forces, fibers, kept: new Map() };
+    return { info: head, moved, positions, field: head.field, given: values, lines, probes, contacts, forces, fibers, kept: new Map() };
   }
 
   positions(frame) { return frame.positions; }
@@ -94,7 +96,7 @@ export class LiveData {
     if (field.kind === 'given') return frame.field === field.name ? frame.given : null;
     let out = frame.kept.get(field.name);
     if (out) return out;
-    const { positions } = frame;
+    const { moved, positions } = frame;
     if (field.kind === 'relative') {
       this.bodies ??= verticesOfBodies(this);
       out = apartFromCommon(this.rest, positions, this.bodies).map((v) => v / this.scale);
@@ -102,10 +104,7 @@ export class LiveData {
       return out;
     }
     out = new Float32Array(this.head.vertices);
-    for (let i = 0; i < this.bodyVertices; ++i) {
-      out[i] = Math.hypot(positions[3 * i] - this.rest[3 * i], positions[3 * i + 1] - this.rest[3 * i + 1],
-        positions[3 * i + 2] - this.rest[3 * i + 2]) / this.scale;
-    }
+    for (let i = 0; i < this.bodyVertices; ++i) out[i] = Math.hypot(moved[3 * i], moved[3 * i + 1], moved[3 * i + 2]);
     frame.kept.set(field.name, out);
     return out;
   }

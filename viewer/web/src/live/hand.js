@@ -1,10 +1,12 @@
 // Pulling, pinning and pushing with the pointer, and how it is drawn over the picture.
 import * as THREE from 'three';
+import { placeLabels } from '../labels.js';
 import { bodyFragment, bodyVertex } from '../shaders.js';
 import { significant, unitScale } from '../numbers.js';
 
 export const TOOLS = [['pull', 'Pull', 'Drag a body: a spring pulls at it'], ['pin', 'Pin', 'Click a body to hold it there, a pin to let go'],
   ['push', 'Push', 'Drag on a body: a sphere pushes it'], ['turn', 'Turn', 'Dragging turns the view']];
+const LETTER = 8, LINE = 16; // pixels that a letter of a force is wide at most, and a line of it high
 const NEAR = 16; // pixels from which a handle is taken
 
 const svg = (name, attributes = {}) => {
@@ -155,9 +157,23 @@ export class Hand {
     }
   }
 
+  /** Forces beside their springs, over neither each other nor other words on the picture. */
+  placeWords(words) {
+    if (words.length === 0) return;
+    const { host, overlays } = this.viewer.stage;
+    const bounds = { width: host.clientWidth, height: host.clientHeight };
+    placeLabels(words, bounds, [...overlays.taken(host), ...overlays.placed]).forEach((place, i) => {
+      const { mark, x, y } = words[i];
+      // Where there is no room, a force is said all the same.
+      mark.text.setAttribute('x', (place ? place.x : x + 12).toFixed(1));
+      mark.text.setAttribute('y', (place ? place.y + 0.8 * LINE : y - 8).toFixed(1));
+    });
+  }
+
   /** Springs and pins over the picture, which has just been drawn. */
   place() {
     const seen = new Set();
+    const words = [];
     for (const h of this.handles) {
       const at = this.project(h.at), to = this.project(h.to);
       if (!at || !to) continue;
@@ -173,11 +189,12 @@ export class Hand {
       put(mark.line, { x1: at[0], y1: at[1], x2: to[0], y2: to[1] });
       put(mark.from, { cx: at[0], cy: at[1] });
       put(mark.end, { cx: to[0], cy: to[1] });
-      put(mark.text, { x: to[0] + 12, y: to[1] - 8 });
       const scale = unitScale(h.force, 'N');
       const text = h.force > 0 ? `${significant(h.force * scale.factor, 2)} ${scale.unit}` : '';
       if (mark.text.textContent !== text) mark.text.textContent = text;
+      words.push({ mark, x: to[0], y: to[1], width: LETTER * text.length, height: LINE });
     }
+    this.placeWords(words);
     for (const [id, mark] of this.marks) {
       if (seen.has(id)) continue;
       mark.group.remove();
