@@ -27,8 +27,8 @@
 namespace isochor {
 
 struct TwoLevelOptions {
-  int smoother_degree = 3;
-  double smoother_range = 8;  // largest over smallest eigenvalue that the smoother cares for
+  int smoother_degree = 2;
+  double smoother_range = 5;  // largest over smallest eigenvalue that the smoother cares for
 };
 
 class TwoLevel {

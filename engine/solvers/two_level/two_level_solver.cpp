@@ -12,7 +12,7 @@ namespace isochor {
 namespace {
 
 constexpr int most_directions = 30, most_rounds = 3;
-constexpr int most_wrong = 8;  // inertias of coarse matrices in one saddle point
+constexpr int most_wrong = 12;  // inertias in one saddle point
 // A multiplication of a direction waits for memory as long as so many of a factorization take; and directions
 // that a factorization is worth, corrections included.
 constexpr double direction_cost = 8, directions = 25;
@@ -37,7 +37,7 @@ std::string TwoLevelSolver::reason() const {
   if (!two_levels_) return direct_->reason();
   std::string text = "factors would take several times the work; " + std::to_string(factored_[0]) +
                      " matrices by two levels, " + std::to_string(factored_[1]) + " by factors";
-  if (factored_[1] > 0) text += " (" + std::string(direct_->name()) + ")";
+  if (factored_[1] > 0) text += " (" + std::string(direct_->name()) + "; " + why_ + ")";
   return text;
 }
 
@@ -113,7 +113,8 @@ FactorReport TwoLevelSolver::analyze(const SymmetricPattern& pattern) {
   return direct_->analyze(pattern);
 }
 
-FactorReport TwoLevelSolver::factor_directly() {
+FactorReport TwoLevelSolver::factor_directly(std::string why) {
+  if (!by_factors_) why_ = std::move(why);
   by_factors_ = true;
   if (!analyzed_) {
     FactorReport report = direct_->analyze(*pattern_);
@@ -128,7 +129,7 @@ FactorReport TwoLevelSolver::factor(std::span<const double> values) {
   values_ = values;
   solutions_ = 0;
   if (pattern_ == nullptr || by_factors_)
-    return pattern_ == nullptr ? direct_->factor(values) : factor_directly();
+    return pattern_ == nullptr ? direct_->factor(values) : factor_directly({});
   FactorReport report;
   vectors_.work.resize(std::max(levels_->size(), at(pattern_->size)));
   norm_ = matrix_norm(*pattern_, values, std::span(vectors_.work).first(at(pattern_->size)));
@@ -146,7 +147,8 @@ FactorReport TwoLevelSolver::factor(std::span<const double> values) {
   }
   if (report.status == FactorStatus::interrupted) return report;
   const bool right = report.negative_pivots == levels_->rows();
-  if (report.status != FactorStatus::ok || (!right && ++wrong_ > most_wrong)) return factor_directly();
+  if (report.status != FactorStatus::ok) return factor_directly("the coarse matrix is singular");
+  if (!right && ++wrong_ > most_wrong) return factor_directly("the matrix seems to have a wrong inertia");
   ++factored_[0];
   if (right) report.negative_pivots = -1;
   reported_ = report.negative_pivots;
@@ -176,13 +178,13 @@ bool TwoLevelSolver::same_inertia(int& iterations) {
   return iterate(look_tolerance, vectors_.b, vectors_.x, iterations) && !gmres_->odd();
 }
 
-SolveReport TwoLevelSolver::solve_directly(double tolerance, std::span<const double> b, std::span<double> x,
-                                           int iterations) {
+SolveReport TwoLevelSolver::solve_directly(std::string why, double tolerance, std::span<const double> b,
+                                           std::span<double> x, int iterations) {
   SolveReport report;
   report.residual = std::numeric_limits<double>::infinity();
   std::fill(x.begin(), x.end(), 0.0);
   if (interrupted()) return report;
-  const FactorReport factored = factor_directly();
+  const FactorReport factored = factor_directly(std::move(why));
   if (factored.status == FactorStatus::ok) {
     report = direct_->solve_to(tolerance, b, x);
     const Index believed = reported_ >= 0 ? reported_ : levels_->rows();
@@ -207,13 +209,20 @@ SolveReport TwoLevelSolver::solve_to(double tolerance, std::span<const double> r
   const double wanted = std::max(tolerance, choice_.tolerance);
   int iterations = 0;
   if (choice_.confirm && solutions_++ == 1 && !same_inertia(iterations))
-    return solve_directly(tolerance, right_hand_side, solution, iterations);
+    return solve_directly("the matrix may have another inertia", tolerance, right_hand_side, solution,
+                          iterations);
   const auto place = levels_->place();
   std::fill(vectors_.b.begin(), vectors_.b.end(), 0.0);
   for (std::size_t u = 0; u < place.size(); ++u) vectors_.b[at(place[u])] = right_hand_side[u];
   const bool arrived = iterate(wanted, vectors_.b, vectors_.x, iterations);
-  if (!arrived || gmres_->odd()) return solve_directly(tolerance, right_hand_side, solution, iterations);
+  if (!arrived)
+    return solve_directly("iterations did not arrive", tolerance, right_hand_side, solution, iterations);
   report.iterations = iterations;
+  // As where a direction does not descend: whoever asks mends the matrix.
+  if (gmres_->odd() && ++wrong_ <= most_wrong) return report;
+  if (gmres_->odd())
+    return solve_directly("the matrix seems to have a wrong inertia", tolerance, right_hand_side, solution,
+                          iterations);
   report.residual = max_norm(vectors_.residual) / (norm_ * max_norm(vectors_.x) + b_norm);
   for (std::size_t u = 0; u < place.size(); ++u) solution[u] = vectors_.x[at(place[u])];
   report.ok = std::isfinite(report.residual);

@@ -14,26 +14,28 @@ namespace isochor {
 struct TwoLevelChoice {
   // Two levels are taken where factors would take `pays` times their work, and no less than `from`
   // multiplications.
-  double pays = 1.5, from = 5e9;
+  double pays = 2, from = 5e9;
   // Whether the inertia behind solutions is looked at once more: where equilibria may be unstable.
   bool confirm = true;
-  double tolerance = 1e-8;  // of what is to be as exact as can be
+  double tolerance = 1e-10;  // of what is to be as exact as can be
 };
 
 // Choices follow from the pattern, by multiplications counted, and from matrices. Factors take over for the
 // rest of a saddle point where
 //
-//   the coarse matrix is singular, or has a wrong inertia again and again
+//   the coarse matrix is singular
 //   minimal residuals do not arrive
-//   they saw an odd number of negative eigenvalues between the matrix and its preconditioner
+//   inertias have seemed wrong a dozen times
+//   an equilibrium may be unstable, as the look at it says that is described below
 //
 // The next one starts with two levels again, so that results depend on the state and not on history.
 //
 // What is known of the inertia. The preconditioner's is that of the coarse matrix, exactly; a wrong one is
 // reported. A right one is reported as unknown, so that directions are judged by the merit
 // (Newton::descends). With every solution the sign of the Hessenberg determinant tells whether the matrix may
-// differ, in directions in which the right-hand side has a part; before a second right-hand side on the same
-// matrix, which is where states are accepted, that is asked with one that has parts along all.
+// differ, in directions in which the right-hand side has a part; then there is no solution, and the matrix is
+// mended. Before a second right-hand side on the same matrix, which is where states are accepted, it is asked
+// with one that has parts along all: factors decide where it objects.
 class TwoLevelSolver final : public LinearSolver {
  public:
   TwoLevelSolver(std::unique_ptr<LinearSolver> direct, const TwoLevelChoice& choice);
@@ -64,9 +66,9 @@ class TwoLevelSolver final : public LinearSolver {
 
  private:
   bool pays(const SymmetricPattern& pattern);
-  FactorReport factor_directly();
-  SolveReport solve_directly(double tolerance, std::span<const double> b, std::span<double> x,
-                             int iterations);
+  FactorReport factor_directly(std::string why);
+  SolveReport solve_directly(std::string why, double tolerance, std::span<const double> b,
+                             std::span<double> x, int iterations);
   bool iterate(double wanted, std::span<const double> b, std::span<double> x, int& iterations);
   bool same_inertia(int& iterations);
 
@@ -86,6 +88,7 @@ class TwoLevelSolver final : public LinearSolver {
   struct {
     std::vector<double> b, x, residual, work;
   } vectors_;
+  std::string why_;           // factors took over, the last time
   int factored_[2] = {0, 0};  // matrices by two levels, and by factors in their place
 };
 
