@@ -78,8 +78,6 @@ Outcome run(Solver solver, int width, const Form& form) {
   out.factor = r.seconds.factor + r.seconds.analyze;
   out.solve = r.seconds.solve;
   out.hash = world.state_hash();
-  if (std::getenv("ISOCHOR_BENCH_METHOD"))
-    std::fprintf(stderr, "%s\n analyze %.2f factor %.2f solve %.2f evaluate %.2f gather %.2f search %.2f\n", world.method().c_str(), r.seconds.analyze, r.seconds.factor, r.seconds.solve, r.seconds.evaluate, r.seconds.gather, r.seconds.line_search);
   for (const Vec3& x : world.positions(body)) out.tip = std::min(out.tip, x.z);
   return out;
 }
