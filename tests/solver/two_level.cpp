@@ -375,3 +375,29 @@ TEST_CASE("two levels that do not get there are followed by factors") {
   bad[5] = std::numeric_limits<double>::quiet_NaN();
   CHECK(solver->factor(bad).status == FactorStatus::not_finite);
 }
+
+// About the smallest that they are taken for.
+TEST_CASE("a world takes two levels for a large body of Tet10, and ends where factors do") {
+  const auto bend = [](Solver solver) {
+    WorldOptions options = test::static_options();
+    options.gravity = {0, 0, -9.81};
+    options.solver = solver;
+    World world = test::make_world(options);
+    const BodyId body = test::add_body(world, to_tet10(test::box({24, 8, 8}, {0.3, 0.1, 0.1})),
+                                       Element::tet10, test::neo_hookean(1e6, 0.5));
+    test::add_volume(world, body);
+    test::hold(world, body, {"x0"});
+    const StepReport report = test::must_advance(world);
+    const auto x = world.positions(body);
+    return std::tuple(world.method(), report.krylov.iterations, std::vector<Vec3>(x.begin(), x.end()));
+  };
+  const auto [method, iterations, x] = bend(Solver::automatic);
+  const auto [direct, none, y] = bend(Solver::multifrontal);
+  INFO(method);
+  CHECK(method.find("two_level") != std::string::npos);
+  CHECK(iterations > 0);
+  CHECK(none == 0);
+  double most = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) most = std::max(most, std::sqrt(dot(x[i] - y[i], x[i] - y[i])));
+  CHECK(most < 1e-9 * 0.3);
+}
