@@ -6,9 +6,9 @@
 namespace isochor::studies {
 
 std::span<const Study> studies() {
-  static const std::array all{accuracy_study(), locking_study(),       solvers_study(),   timesteps_study(),
-                              effects_study(),  scaling_study(),       stability_study(), zones_study(),
-                              pressure_study(), stabilization_study(), references_study()};
+  static const std::array all{accuracy_study(), locking_study(),       solvers_study(),    timesteps_study(),
+                              effects_study(),  scaling_study(),       stability_study(),  zones_study(),
+                              pressure_study(), stabilization_study(), references_study(), papers_study()};
   return all;
 }
 

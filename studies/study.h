@@ -100,5 +100,6 @@ Study zones_study();
 Study pressure_study();
 Study stabilization_study();
 Study references_study();
+Study papers_study();
 
 }  // namespace isochor::studies

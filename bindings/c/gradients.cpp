@@ -40,14 +40,23 @@ std::vector<Index> nodes_of(const World& world, const iso_output& o) {
   return nodes;
 }
 
+Output::Function function_of(iso_positions_fn function, void* user) {
+  return [function, user](std::span<const Vec3> x, std::span<Vec3> gradient) -> Result<double> {
+    return function(user, &x.front().x, &gradient.front().x, x.size());
+  };
+}
+
 Output output_from(const World& world, const iso_output& o) {
   switch (o.kind) {
     case ISO_OUTPUT_POSITIONS:
+    case ISO_OUTPUT_SQUARE:
     case ISO_OUTPUT_DISTANCE: {
       const BodyId body = body_of(world, o.body);
       std::vector<Vec3> given = vectors(o.vectors, o.count, o.stride, "vectors");
       std::vector<Index> nodes = nodes_of(world, o);
       if (o.kind == ISO_OUTPUT_DISTANCE) return Output::distance(body, std::move(nodes), std::move(given));
+      if (o.kind == ISO_OUTPUT_SQUARE)
+        return Output::square(body, std::move(nodes), std::move(given), o.target);
       return Output::positions(body, std::move(nodes), std::move(given));
     }
     case ISO_OUTPUT_MATERIAL_POINT:
@@ -60,9 +69,19 @@ Output output_from(const World& world, const iso_output& o) {
                               vector(o.moment, "moment"));
     case ISO_OUTPUT_ELASTIC_ENERGY:
       return Output::elastic_energy();
+    case ISO_OUTPUT_ENERGY:
+      return Output::energy(text(o.quantity, "quantity"));
+    case ISO_OUTPUT_STRESS:
+      return Output::stress(body_of(world, o.body), o.cell, text(o.quantity, "quantity"));
+    case ISO_OUTPUT_EFFECT_FORCE:
+      return Output::effect_force(effect_of(world, o.effect), body_of(world, o.body),
+                                  vector(o.direction, "direction"));
+    case ISO_OUTPUT_OF_POSITIONS:
+      if (o.function == nullptr) refuse("function is a null pointer");
+      return Output::of_positions(body_of(world, o.body), function_of(o.function, o.user));
     default:
       refuse("kind = " + std::to_string(o.kind) + "; give one of ISO_OUTPUT_..., 0 to " +
-             std::to_string(ISO_OUTPUT_ELASTIC_ENERGY));
+             std::to_string(ISO_OUTPUT_OF_POSITIONS));
   }
 }
 
@@ -83,6 +102,13 @@ Parameter constant_from(const iso_world& w, const iso_parameter& p) {
   PartContext context = w.keys.context(*w.world);
   std::erase(context.names_taken, w.world->effect_name(effect));
   return constant_by_keys(effect, text(p.effect_kind, "effect_kind"), number_from(p), std::move(context));
+}
+
+Curve curve_from(const iso_parameter& p) {
+  Curve out;
+  const double* pairs = &given(p.curve, "curve");
+  for (std::size_t k = 0; k < p.curve_count; ++k) out.points.push_back({pairs[2 * k], pairs[2 * k + 1]});
+  return out;
 }
 
 Parameter parameter_from(const iso_world& w, const iso_parameter& p) {
@@ -109,9 +135,11 @@ Parameter parameter_from(const iso_world& w, const iso_parameter& p) {
       return Parameter::shape(body(), vectors(p.motion, p.count, p.stride, "motion"));
     case ISO_PARAMETER_INITIAL_VELOCITY:
       return Parameter::initial_velocity(body(), vectors(p.motion, p.count, p.stride, "motion"));
+    case ISO_PARAMETER_CURVE_POINT:
+      return Parameter::curve_point(effect_of(world, p.effect), curve_from(p), p.number);
     default:
       refuse("kind = " + std::to_string(p.kind) + "; give one of ISO_PARAMETER_..., 0 to " +
-             std::to_string(ISO_PARAMETER_INITIAL_VELOCITY));
+             std::to_string(ISO_PARAMETER_CURVE_POINT));
   }
 }
 
@@ -204,6 +232,9 @@ void show(const KeptGradients& from, iso_gradient_table& out) {
   out.undecided = from.undecided.data();
   out.undecided_count = from.undecided.size();
   out.adjoint = from.told.adjoint ? 1 : 0;
+  out.kept_states = from.told.kept_states;
+  out.steps_again = from.told.steps_again;
+  out.state_bytes = from.told.state_bytes;
 }
 
 }  // namespace

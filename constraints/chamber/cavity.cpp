@@ -1,326 +1,19 @@
 #include "isochor/effects/cavity.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <map>
-#include <optional>
 
+#include "constraints/chamber/chamber_caps.h"
 #include "constraints/chamber/chamber_network.h"
+#include "constraints/chamber/chamber_surface.h"
 #include "constraints/stencil/face_pool.h"
 #include "engine/base/text.h"
-#include "engine/mesh/cell_shape.h"
 #include "engine/scene/builder.h"
 #include "engine/scene/embedding.h"
 
 namespace isochor {
 
 namespace {
-
-// A face turned so that its normal points from the cavity into the solid.
-using Face = std::vector<Index>;
-
-std::size_t corners_of(const Face& f) {
-  return f.size() == 4 ? 4 : 3;
-}
-
-// Ascending; the first of a triangle is -1.
-using FaceKey = std::array<Index, 4>;
-
-FaceKey sorted_corners(std::span<const Index> corners) {
-  FaceKey key{-1, -1, -1, -1};
-  std::copy(corners.begin(), corners.end(), key.begin());
-  std::sort(key.begin(), key.end());
-  return key;
-}
-FaceKey key_of(const Face& f) {
-  return sorted_corners(std::span(f).first(corners_of(f)));
-}
-
-void flip(Face& f) {
-  std::swap(f[1], f[corners_of(f) - 1]);
-  if (f.size() == 6) std::swap(f[3], f[5]);
-}
-
-// Turns faces against the outward normals of the cells that own them; refuses faces that are not on the
-// boundary.
-Result<void> orient(const BodyData& body, std::vector<Face>& faces, std::span<const Vec3> rest,
-                    const std::string& who) {
-  const auto per = static_cast<std::size_t>(nodes_per_cell(body.mesh.cell_type));
-  const CellShape& shape = cell_shape(body.mesh.cell_type);
-  struct Owner {
-    int cells = 0;
-    Vec3 middle{};  // of the last cell
-  };
-  std::map<FaceKey, Owner> owners;
-  for (const Face& f : faces) owners[key_of(f)] = {};
-  for (std::size_t c = 0; c < body.global_cells.size(); c += per) {
-    const Index* n = body.global_cells.data() + c;
-    for (std::size_t side = 0; side < shape.sides; ++side) {
-      std::array<Index, 4> corner{};
-      for (std::size_t k = 0; k < shape.side_corners; ++k) corner[k] = n[shape.side[side][k]];
-      const auto it = owners.find(sorted_corners(std::span(corner).first(shape.side_corners)));
-      if (it == owners.end()) continue;
-      ++it->second.cells;
-      it->second.middle = {};
-      for (std::size_t k = 0; k < shape.corners; ++k)
-        it->second.middle += (1.0 / static_cast<double>(shape.corners)) * rest[at(n[k])];
-    }
-  }
-  for (Face& f : faces) {
-    const auto& [count, middle] = owners[key_of(f)];
-    if (count != 1) {
-      return Error{who + "face (" + std::to_string(f[0] - body.first_node + 1) + ", " +
-                   std::to_string(f[1] - body.first_node + 1) + ", " +
-                   std::to_string(f[2] - body.first_node + 1) + ") belongs to " + std::to_string(count) +
-                   " cells; a cavity is bounded by faces of exactly one cell, name boundary surfaces only"};
-    }
-    // From the diagonals, where there are two.
-    const std::size_t last = corners_of(f) - 1;
-    const Vec3 a = rest[at(f[0])];
-    const Vec3 normal = cross(rest[at(f[last - 1])] - a, rest[at(f[last])] - rest[at(f[last == 3 ? 1 : 0])]);
-    if (dot(normal, middle - a) < 0) flip(f);
-  }
-  return {};
-}
-
-// Turns the faces of a thin body, which all go round one way, so that they look out of what they enclose.
-Result<void> orient_sheet(const BodyData& body, std::vector<Face>& faces, std::span<const Vec3> rest,
-                          const std::string& who) {
-  Vec3 middle{};
-  for (const Face& f : faces) {
-    for (const Index n : f) middle += (1.0 / static_cast<double>(3 * faces.size())) * rest[at(n)];
-  }
-  double volume = 0, size = 0;
-  for (const Face& f : faces) {
-    const double cone = dot(cross(rest[at(f[0])] - middle, rest[at(f[1])] - middle), rest[at(f[2])] - middle);
-    volume += cone;
-    size += std::abs(cone);
-  }
-  if (!(std::abs(volume) > 1e-6 * size)) {
-    return Error{
-        who + "the faces of the thin body \"" + body.name +
-        "\" are flat or as much bent one way as the other, so that it is not known which side of them "
-        "the chamber is on; close the surface"};
-  }
-  if (volume < 0)
-    for (Face& f : faces) flip(f);
-  return {};
-}
-
-// Boundary loops of the oriented faces: corner nodes in order, with the mid-edge node after each corner for
-// Tet10.
-//
-// A surface is closed where its oriented edges cancel, however many faces meet in one: the volume is a sum
-// over faces, whichever of them are thought to be joined.
-Result<std::vector<std::vector<Index>>> boundary_loops(const std::vector<Face>& faces,
-                                                       const std::string& who) {
-  struct Edge {
-    int forward = 0, backward = 0;  // faces that run along it from the smaller node on, and against that
-    Index middle = -1;
-  };
-  std::map<std::pair<Index, Index>, Edge> edges;
-  for (const Face& f : faces) {
-    for (std::size_t k = 0; k < corners_of(f); ++k) {
-      const Index a = f[k], b = f[(k + 1) % corners_of(f)];
-      Edge& edge = edges[std::minmax(a, b)];
-      ++(a < b ? edge.forward : edge.backward);
-      if (f.size() == 6) edge.middle = f[3 + k];
-    }
-  }
-  std::map<Index, std::pair<Index, Index>> next;  // corner -> (next corner, mid)
-  for (const auto& [ends, edge] : edges) {
-    const int open = edge.forward - edge.backward;
-    if (open == 0) continue;
-    // The hole's loop runs against the faces.
-    const Index from = open > 0 ? ends.second : ends.first, to = open > 0 ? ends.first : ends.second;
-    if (std::abs(open) > 1 || !next.emplace(from, std::pair(to, edge.middle)).second) {
-      return Error{who +
-                   "two of its openings touch in one node; separate them in the mesh, or add the faces "
-                   "between them to the cavity"};
-    }
-  }
-  std::vector<std::vector<Index>> loops;
-  while (!next.empty()) {
-    std::vector<Index> loop;
-    Index at_node = next.begin()->first;
-    while (true) {
-      const auto it = next.find(at_node);
-      if (it == next.end()) break;
-      loop.push_back(it->first);
-      if (it->second.second >= 0) loop.push_back(it->second.second);
-      at_node = it->second.first;
-      next.erase(it);
-    }
-    loops.push_back(std::move(loop));
-  }
-  return loops;
-}
-
-// Fan over a loop from the corner that comes first by its rest position: the cap of a free rim is then the
-// same however the nodes are numbered.
-void add_cap(EnclosedVolumePool& pool, std::vector<Index> loop, std::span<const Vec3> rest, bool curved) {
-  const std::size_t stride = curved ? 2 : 1, corners = loop.size() / stride;
-  std::size_t apex = 0;
-  for (std::size_t i = 1; i < corners; ++i) {
-    const Vec3 &a = rest[at(loop[i * stride])], &b = rest[at(loop[apex * stride])];
-    if (std::array{a.x, a.y, a.z} < std::array{b.x, b.y, b.z}) apex = i;
-  }
-  std::rotate(loop.begin(), loop.begin() + static_cast<std::ptrdiff_t>(apex * stride), loop.end());
-  const auto corner = [&](std::size_t i) { return loop[(i % corners) * stride]; };
-  const auto middle = [&](std::size_t i) { return loop[(i % corners) * stride + 1]; };
-  if (!curved) {
-    for (std::size_t i = 1; i + 1 < corners; ++i) {
-      const Index tri[3] = {corner(0), corner(i), corner(i + 1)};
-      pool.add_face(tri, triangle3_rule());
-    }
-    return;
-  }
-  // The fan meets the two edges at its apex along their chords; their bulges are added apart.
-  for (std::size_t i = 1; i + 1 < corners; ++i) {
-    const Index cap[4] = {corner(0), corner(i), corner(i + 1), middle(i)};
-    pool.add_face(cap, cap4_rule());
-  }
-  for (const std::size_t i : {std::size_t{0}, corners - 1}) {
-    const Index bulge[3] = {corner(i), corner(i + 1), middle(i)};
-    pool.add_face(bulge, bulge3_rule());
-  }
-}
-
-// An opening that lies on several symmetry planes, such as that of an eighth of a sphere. Its nodes slide in
-// their planes, so a cap must stay in them too: a fan over nodes would cut the corner and pull on the rim.
-// The volume is taken from a point that all planes share, where their caps add nothing; a plane that misses
-// the point (the second of two parallel ones) gets a fan from a fixed apex.
-class SymmetryCaps {
- public:
-  SymmetryCaps(const Builder& builder, double length) : builder_(builder), length_(length) {}
-
-  bool planar(const std::vector<Index>& loop) const {
-    const auto rest = builder_.rest();
-    Vec3 normal{};
-    const Vec3 o = rest[at(loop[0])];
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      normal += cross(rest[at(loop[i])] - o, rest[at(loop[(i + 1) % loop.size()])] - o);
-    }
-    const double size = std::sqrt(dot(normal, normal));
-    return size == 0 || std::all_of(loop.begin(), loop.end(), [&](Index n) {
-             return std::abs(dot(normal, rest[at(n)] - o)) <= 1e-7 * length_ * size;
-           });
-  }
-
-  // Finds the plane of every edge; false when an edge lies on none.
-  bool add_loop(const std::vector<Index>& loop, std::size_t stride) {
-    std::vector<std::size_t> planes;
-    for (std::size_t i = 0; i < loop.size(); i += stride) {
-      const Index a = loop[i], b = loop[(i + stride) % loop.size()];
-      const auto plane = plane_of(a, b, stride == 2 ? loop[i + 1] : a);
-      if (!plane) return false;
-      planes.push_back(*plane);
-    }
-    loops_.push_back({loop, stride, std::move(planes)});
-    return true;
-  }
-
-  // The common point nearest to `start`, and the apex of every plane.
-  Vec3 place(const Vec3& start) {
-    std::vector<std::size_t> active;
-    for (std::size_t k = 0; k < planes_.size() && active.size() < 3; ++k) {
-      Vec3 n = planes_[k].normal;
-      for (const std::size_t j : active) n -= dot(n, frame_[j]) * frame_[j];
-      frame_.resize(planes_.size());
-      if (dot(n, n) < 1e-12) continue;
-      frame_[k] = (1 / std::sqrt(dot(n, n))) * n;
-      active.push_back(k);
-    }
-    const auto project = [&](Vec3 x, std::size_t dependent) {
-      // Few planes, any angles: alternate until all hold.
-      for (int sweep = 0; sweep < 200; ++sweep) {
-        for (const std::size_t k : active) {
-          const bool parallel = std::abs(dot(planes_[k].normal, planes_[dependent].normal)) > 1 - 1e-9;
-          const Plane& p = planes_[parallel ? dependent : k];
-          x -= (dot(p.normal, x) - p.offset) * p.normal;
-        }
-      }
-      return x;
-    };
-    const Vec3 origin = planes_.empty() ? start : project(start, active[0]);
-    for (std::size_t k = 0; k < planes_.size(); ++k) {
-      planes_[k].apex = on(k, origin) ? origin : project(origin, k);
-    }
-    return origin;
-  }
-
-  // What closes the gap between the fans of two planes must lie in a plane through the origin.
-  bool fits(const Vec3& origin) const {
-    for (const Loop& loop : loops_) {
-      for (std::size_t e = 0; e < loop.planes.size(); ++e) {
-        const std::size_t k = loop.planes[e], l = loop.planes[(e + 1) % loop.planes.size()];
-        if (k == l || planes_[k].apex == planes_[l].apex) continue;
-        if (!(on(k, origin) && on(k, planes_[l].apex)) && !(on(l, origin) && on(l, planes_[k].apex)))
-          return false;
-      }
-    }
-    return true;
-  }
-
-  void add_to(EnclosedVolumePool& pool, const Vec3& origin) const {
-    for (const Loop& loop : loops_) {
-      for (std::size_t e = 0; e < loop.planes.size(); ++e) {
-        const Plane& plane = planes_[loop.planes[e]];
-        if (plane.apex == origin) continue;
-        const std::size_t i = e * loop.stride;
-        const Index edge[3] = {loop.nodes[i], loop.nodes[(i + loop.stride) % loop.nodes.size()],
-                               loop.nodes[(i + 1) % loop.nodes.size()]};
-        const bool curved = loop.stride == 2;
-        pool.add_face(std::span(edge, curved ? 3 : 2), curved ? fan3_rule() : fan2_rule(), plane.apex);
-      }
-    }
-  }
-
- private:
-  struct Plane {
-    Vec3 normal{};
-    double offset = 0;
-    Vec3 apex{};
-  };
-  struct Loop {
-    std::vector<Index> nodes;
-    std::size_t stride;
-    std::vector<std::size_t> planes;  // of each edge
-  };
-
-  bool on(std::size_t k, const Vec3& x) const {
-    return std::abs(dot(planes_[k].normal, x) - planes_[k].offset) <= 1e-7 * length_;
-  }
-
-  // A direction in which both ends (and the middle) are held and along which the edge does not extend.
-  std::optional<std::size_t> plane_of(Index a, Index b, Index middle) {
-    const auto rest = builder_.rest();
-    std::optional<Vec3> found;
-    for (const Vec3& n : builder_.directions_given(a)) {
-      const auto of_b = builder_.directions_given(b);
-      const bool shared = std::any_of(of_b.begin(), of_b.end(),
-                                      [&](const Vec3& m) { return std::abs(dot(n, m)) > 1 - 1e-9; });
-      if (!shared || std::abs(dot(n, rest[at(b)] - rest[at(a)])) > 1e-7 * length_ ||
-          std::abs(dot(n, rest[at(middle)] - rest[at(a)])) > 1e-7 * length_) {
-        continue;
-      }
-      for (std::size_t k = 0; k < planes_.size(); ++k) {
-        if (std::abs(dot(planes_[k].normal, n)) > 1 - 1e-9 && on(k, rest[at(a)])) return k;
-      }
-      found = n;
-    }
-    if (!found) return std::nullopt;
-    planes_.push_back({*found, dot(*found, rest[at(a)]), {}});
-    return planes_.size() - 1;
-  }
-
-  const Builder& builder_;
-  double length_;
-  std::vector<Plane> planes_;
-  std::vector<Vec3> frame_;
-  std::vector<Loop> loops_;
-};
 
 class CavityRow final : public RowPool {
  public:
@@ -423,17 +116,17 @@ class CavityEffect final : public EffectSource {
     if (!list) return list.failure();
     const BodyData& body = builder.body(def_.body);
     const auto per = static_cast<std::size_t>(nodes_per_face(body.mesh.cell_type));
-    std::vector<Face> faces;
+    std::vector<ChamberFace> faces;
     for (std::size_t f = 0; f < list.value().size(); f += per) {
       const auto first = list.value().begin() + static_cast<std::ptrdiff_t>(f);
       faces.emplace_back(first, first + static_cast<std::ptrdiff_t>(per));
     }
     if (auto r = body.thin() ? orient_sheet(body, faces, builder.rest(), who())
-                             : orient(body, faces, builder.rest(), who());
+                             : orient_faces(body, faces, builder.rest(), who());
         !r)
       return r.failure();
     Vec3 origin{};
-    for (const Face& f : faces)
+    for (const ChamberFace& f : faces)
       origin += (1.0 / static_cast<double>(faces.size())) * builder.rest()[at(f[0])];
     auto loops = boundary_loops(faces, who());
     if (!loops) return loops.failure();
@@ -452,7 +145,7 @@ class CavityEffect final : public EffectSource {
                    "body, or close the surface"};
     }
     auto pool = std::make_shared<EnclosedVolumePool>(def_.name, origin);
-    for (const Face& f : faces) pool->add_face(f, face_rule(per));
+    for (const ChamberFace& f : faces) pool->add_face(f, face_rule(per));
     for (const auto* loop : fans) add_cap(*pool, *loop, builder.rest(), per == 6);
     symmetry.add_to(*pool, origin);
     pool->finish();
@@ -500,7 +193,7 @@ class CavityEffect final : public EffectSource {
 
   // A cap hands the force on it to its rim. Over faces that point one way it is as large as that on them, and
   // what was meant as a load ends as a pinch of the rim.
-  void warn_of_lids(Builder& builder, const std::vector<Face>& faces,
+  void warn_of_lids(Builder& builder, const std::vector<ChamberFace>& faces,
                     const std::vector<std::vector<Index>>& loops) const {
     const auto is_free = [&](const std::vector<Index>& loop) {
       return std::any_of(loop.begin(), loop.end(), [&](Index n) { return builder.given_directions(n) == 0; });
@@ -509,7 +202,7 @@ class CavityEffect final : public EffectSource {
     const auto rest = builder.rest();
     Vec3 sum{};
     double area = 0;
-    for (const Face& f : faces) {
+    for (const ChamberFace& f : faces) {
       const std::size_t last = corners_of(f) - 1;
       const Vec3 n = 0.5 * cross(rest[at(f[last - 1])] - rest[at(f[0])],
                                  rest[at(f[last])] - rest[at(f[last == 3 ? 1 : 0])]);

@@ -1,74 +1,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 #include "engine/solvers/front/front_tree.h"
 #include "engine/solvers/ordering.h"
+#include "engine/system/gather_lists.h"
+#include "engine/system/matrix_pattern.h"
 #include "engine/system/row_treatment.h"
 #include "engine/system/share_out.h"
 #include "engine/system/structure.h"
 
 namespace isochor {
-
-namespace {
-
-// One contribution to a destination that is named by two indices.
-struct Contribution {
-  std::uint64_t key = 0;  // (first << 32) | second
-  std::int64_t source = 0;
-  double weight = 1;
-};
-
-std::uint64_t key_of(Index first, Index second) {
-  return (static_cast<std::uint64_t>(first) << 32) | static_cast<std::uint32_t>(second);
-}
-
-std::uint64_t destination(const Contribution& c) {
-  return c.key;
-}
-std::uint64_t destination(std::uint64_t key) {
-  return key;
-}
-
-// By destination, in linear time and stable: contributions to one stay as they came, and this order is what
-// makes sums independent of the thread count.
-template <class T>
-void sort_by_destination(std::vector<T>& items) {
-  std::array<std::uint64_t, 2> largest{};
-  for (const T& item : items) {
-    largest[0] = std::max(largest[0], destination(item) & 0xffffffffu);
-    largest[1] = std::max(largest[1], destination(item) >> 32);
-  }
-  std::vector<T> sorted(items.size());
-  for (const int half : {0, 1}) {
-    if (largest[static_cast<std::size_t>(half)] == 0) continue;
-    const auto bucket = [half](const T& item) { return (destination(item) >> (32 * half)) & 0xffffffffu; };
-    std::vector<std::size_t> next(largest[static_cast<std::size_t>(half)] + 2, 0);
-    for (const T& item : items) ++next[bucket(item) + 1];
-    std::partial_sum(next.begin(), next.end(), next.begin());
-    for (const T& item : items) sorted[next[bucket(item)]++] = item;
-    items.swap(sorted);
-  }
-}
-
-void gather_by_key(std::vector<Contribution>& c, bool weighted, Gather& gather,
-                   std::vector<std::array<Index, 2>>& ends) {
-  sort_by_destination(c);
-  gather.source.reserve(c.size());
-  if (weighted) gather.weight.reserve(c.size());
-  for (std::size_t i = 0; i < c.size(); ++i) {
-    if (i == 0 || c[i].key != c[i - 1].key) {
-      if (i != 0) gather.offset.push_back(static_cast<std::int64_t>(i));
-      ends.push_back({static_cast<Index>(c[i].key >> 32), static_cast<Index>(c[i].key & 0xffffffffu)});
-    }
-    gather.source.push_back(c[i].source);
-    if (weighted) gather.weight.push_back(c[i].weight);
-  }
-  if (!c.empty()) gather.offset.push_back(static_cast<std::int64_t>(c.size()));
-}
-
-}  // namespace
 
 class SystemCompiler {
  public:
@@ -118,9 +61,7 @@ class SystemCompiler {
     if (shares()) {
       if (auto r = share_rows(*s_, *t_); !r) return r.failure();
     }
-    build_kkt();
-    locate_entries();
-    if (!shares()) group_unknowns();
+    MatrixPattern(*s_, *t_).build();
     find_ordering_base();
     hash_layout();
     return s_;
@@ -266,19 +207,6 @@ class SystemCompiler {
     }
     fill_gather(to_row, s_->row_data_.compliant + s_->row_data_.prescribed, t_->gathers.row);
     fill_gather(to_function, t_->pools.total.function, t_->gathers.function);
-  }
-
-  // Gather lists for destinations 0..count-1, the key being the destination.
-  static void fill_gather(std::vector<Contribution>& c, std::int64_t count, Gather& gather) {
-    sort_by_destination(c);
-    std::size_t i = 0;
-    for (std::int64_t d = 0; d < count; ++d) {
-      for (; i < c.size() && c[i].key == static_cast<std::uint64_t>(d); ++i) {
-        gather.source.push_back(c[i].source);
-        gather.weight.push_back(c[i].weight);
-      }
-      gather.offset.push_back(static_cast<std::int64_t>(i));
-    }
   }
 
   void gather_residual() {
@@ -440,163 +368,6 @@ class SystemCompiler {
       s_->row_data_.overshoot.resize(at(s_->row_data_.compliant), infinity);
       std::fill_n(s_->row_data_.overshoot.begin() + first, pool.rows(), pool.largest_overshoot);
     }
-  }
-
-  // Unknowns ascend with nodes and then with rows, so columns come out sorted without a look at their
-  // entries.
-  void build_kkt() {
-    const auto& unknown = t_->treated.unknown;
-    std::vector<std::uint64_t> blocks, row_entries, compliance_entries;  // keys: column, row
-    for (const auto& [i, j] : t_->gathers.block_ends) blocks.push_back(key_of(j, i));
-    for (const FilledRows* rows : {&t_->treated.condensed, &t_->treated.augmented}) {
-      for_filled_blocks(*rows, [&](Index i, Index j) {
-        if (owns(i)) blocks.push_back(key_of(j, i));
-      });
-    }
-    for (const auto& [row, node] : t_->gathers.jacobian_ends) {
-      if (unknown[at(row)] >= 0 && owns(node)) row_entries.push_back(key_of(node, unknown[at(row)]));
-    }
-    for (const ComplianceEntry& e : s_->row_data_.compliance) {
-      if (unknown[at(e.row)] >= 0 && owns_row(e.row))
-        compliance_entries.push_back(key_of(unknown[at(e.col)], unknown[at(e.row)]));
-    }
-    for (auto* keys : {&blocks, &row_entries, &compliance_entries}) {
-      sort_by_destination(*keys);
-      keys->erase(std::unique(keys->begin(), keys->end()), keys->end());
-    }
-    SymmetricPattern& kkt = t_->matrix.pattern;
-    const auto& first = t_->unknowns.first;
-    kkt.size = s_->free_unknowns() + static_cast<Index>(t_->treated.kept.size());
-    kkt.row.reserve(9 * blocks.size() + 3 * row_entries.size() + compliance_entries.size());
-    kkt.column_start = {0};
-    const auto end_of = [](const std::vector<std::uint64_t>& keys, std::size_t from, Index column) {
-      while (from < keys.size() && static_cast<Index>(keys[from] >> 32) == column) ++from;
-      return from;
-    };
-    const auto row_of = [](std::uint64_t key) { return static_cast<Index>(key & 0xffffffffu); };
-    const auto end_column = [&] { kkt.column_start.push_back(static_cast<std::int64_t>(kkt.row.size())); };
-    std::size_t block = 0, entry = 0;
-    for (Index j = 0; j < s_->nodes(); ++j) {
-      const std::size_t end_of_blocks = end_of(blocks, block, j),
-                        end_of_entries = end_of(row_entries, entry, j);
-      for (Index c = first[at(j)]; c < first[at(j) + 1]; ++c) {
-        for (std::size_t k = block; k < end_of_blocks; ++k) {
-          const Index i = row_of(blocks[k]);
-          for (Index r = i == j ? c : first[at(i)]; r < first[at(i) + 1]; ++r) kkt.row.push_back(r);
-        }
-        for (std::size_t k = entry; k < end_of_entries; ++k) kkt.row.push_back(row_of(row_entries[k]));
-        end_column();
-      }
-      block = end_of_blocks;
-      entry = end_of_entries;
-    }
-    entry = 0;
-    for (Index u = s_->free_unknowns(); u < kkt.size; ++u) {
-      for (const std::size_t end = end_of(compliance_entries, entry, u); entry < end; ++entry)
-        kkt.row.push_back(row_of(compliance_entries[entry]));
-      end_column();
-    }
-  }
-
-  // Visits all blocks that rows add to the stiffness. Nodes of a row ascend, so the blocks (i, j) are those
-  // of the lower triangle.
-  template <class Visit>
-  void for_filled_blocks(const FilledRows& rows, Visit visit) const {
-    for (const Index row : rows.row) {
-      const auto begin = t_->gathers.row_begin[at(row)], end = t_->gathers.row_begin[at(row) + 1];
-      for (auto a = begin; a < end; ++a) {
-        for (auto b = begin; b <= a; ++b)
-          visit(t_->gathers.jacobian_ends[a][1], t_->gathers.jacobian_ends[b][1]);
-      }
-    }
-  }
-
-  std::int64_t place(Index row, Index col) const {
-    const auto& kkt = t_->matrix.pattern;
-    const auto begin = kkt.row.begin() + kkt.column_start[at(col)];
-    const auto end = kkt.row.begin() + kkt.column_start[at(col) + 1];
-    return std::lower_bound(begin, end, row) - kkt.row.begin();
-  }
-
-  void locate_entries() {
-    const auto& first = t_->unknowns.first;
-    const auto locate = [&](std::vector<std::int64_t>& places, Index row_or_node, Index node, bool is_row) {
-      for (Index k = 0; k < 3; ++k) {
-        const Index c = first[at(node)] + k;
-        if (c >= first[at(node) + 1]) {
-          places.push_back(-1);
-        } else if (is_row) {
-          const Index u = t_->treated.unknown[at(row_or_node)];
-          places.push_back(u < 0 || !owns(node) ? -1 : place(u, c));
-        } else if (row_or_node == node) {
-          places.push_back(place(c, c));
-        } else {
-          places.push_back(
-              first[at(row_or_node)] < first[at(row_or_node) + 1] ? place(first[at(row_or_node)], c) : -1);
-        }
-      }
-    };
-    for (const auto& [i, j] : t_->gathers.block_ends) locate(t_->matrix.block, i, j, false);
-    for (const auto& [row, node] : t_->gathers.jacobian_ends) locate(t_->matrix.jacobian, row, node, true);
-    for (const ComplianceEntry& e : s_->row_data_.compliance) {
-      const Index row = t_->treated.unknown[at(e.row)], col = t_->treated.unknown[at(e.col)];
-      t_->matrix.compliance.push_back(row < 0 || !owns_row(e.row) ? -1 : place(row, col));
-    }
-    for (FilledRows* rows : {&t_->treated.condensed, &t_->treated.augmented}) {
-      for_filled_blocks(*rows, [&](Index i, Index j) {
-        for (Index c = first[at(j)]; c < first[at(j) + 1]; ++c) {
-          const Index from = i == j ? c : first[at(i)];
-          rows->place.push_back(owns(i) && from < first[at(i) + 1] ? place(from, c) : -1);
-        }
-      });
-    }
-    const auto& owner = t_->matrix.pattern.owner;
-    for (Index i = 0; i < t_->matrix.pattern.size; ++i) {
-      const bool here = owner.empty() || owner[at(i)] == shares()->rank();
-      t_->matrix.diagonal.push_back(here ? t_->matrix.pattern.column_start[at(i)] : -1);
-    }
-  }
-
-  // The unknowns of a node share a group; a local row joins the node that most of its stencils have in
-  // common, so that the ordering sees one vertex a node. Rows over large parts of a body stay apart.
-  void group_unknowns() {
-    SymmetricPattern& kkt = t_->matrix.pattern;
-    kkt.group.assign(at(kkt.size), -1);
-    Index groups = 0;
-    std::vector<Index> group_of_node(at(s_->nodes()), -1);
-    for (Index i = 0; i < s_->nodes(); ++i) {
-      for (Index c = t_->unknowns.first[at(i)]; c < t_->unknowns.first[at(i) + 1]; ++c) {
-        if (group_of_node[at(i)] < 0) group_of_node[at(i)] = groups++;
-        kkt.group[at(c)] = group_of_node[at(i)];
-      }
-    }
-    std::vector<Index> rows_in(at(groups), 0);
-    std::size_t e = 0;
-    for (Index r = 0; r < s_->row_data_.compliant; ++r) {
-      const std::size_t begin = e;
-      while (e < t_->gathers.jacobian_ends.size() && t_->gathers.jacobian_ends[e][0] == r) ++e;
-      if (t_->treated.unknown[at(r)] < 0) continue;
-      Index best = -1;
-      std::int64_t best_count = 0;
-      if (e - begin <= local_row_nodes) {
-        for (std::size_t k = begin; k < e; ++k) {
-          const Index g = group_of_node[at(t_->gathers.jacobian_ends[k][1])];
-          if (g < 0) continue;
-          const std::int64_t count = t_->gathers.jacobian.offset[k + 1] - t_->gathers.jacobian.offset[k];
-          if (best < 0 || count > best_count || (count == best_count && rows_in[at(g)] < rows_in[at(best)])) {
-            best = g;
-            best_count = count;
-          }
-        }
-      }
-      if (best < 0) {
-        best = groups++;
-        rows_in.push_back(0);
-      }
-      ++rows_in[at(best)];
-      kkt.group[at(t_->treated.unknown[at(r)])] = best;
-    }
-    kkt.groups = groups;
   }
 
   void find_ordering_base() {

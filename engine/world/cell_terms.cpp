@@ -36,8 +36,9 @@ struct EnergyForces {
   }
 };
 
-// Patches, once for each of their cells: what the cell alone adds at the patch's deformation.
-SolidData cell_by_cell(const SolidData& patches) {
+// Patches, once for each of their cells, and which `patch` that is: what the cell alone adds at the patch's
+// deformation.
+SolidData cell_by_cell(const SolidData& patches, std::vector<Index>& patch) {
   SolidData out;
   for (Index s = 0; s < patches.nodes.count(); ++s) {
     const auto nodes = patches.nodes[s];
@@ -47,6 +48,7 @@ SolidData cell_by_cell(const SolidData& patches) {
       out.gradient.insert(out.gradient.end(), first, first + static_cast<std::ptrdiff_t>(nodes.size()));
       out.weight.push_back(patches.weight[at(s)] * patches.patch_share[at(k)]);
       out.cell.push_back(patches.patch_cells.item[at(k)]);
+      patch.push_back(s);
     }
   }
   return out;
@@ -58,7 +60,7 @@ void CellTerms::pool_forces(Index pool, const Force& visit) const {
   const auto& solid = static_cast<const SolidPool&>(*system_.parts().stencil_pools[at(pool)]);
   const EnergyForces all(solid, assembly_.request(pool, Want::gradient, x_), parallel_);
   for (Index s = 0; s < solid.stencils(); ++s)
-    visit({solid.data().cell[at(s)], 1, all.energy[at(s)], solid.nodes()[s], all.of(solid, s)});
+    visit({solid.data().cell[at(s)], -1, -1, 1, all.energy[at(s)], solid.nodes()[s], all.of(solid, s)});
 }
 
 // Patches take the mean of the energies of their cells.
@@ -78,13 +80,14 @@ Result<void> CellTerms::patch_forces(const RegionData& region, const Force& visi
   if (region.material->field_cells() == 0) {
     for (Index s = 0; s < solid.stencils(); ++s) {
       for (Index k = patches.patch_cells.offset[at(s)]; k < patches.patch_cells.offset[at(s) + 1]; ++k) {
-        visit({patches.patch_cells.item[at(k)], patches.patch_share[at(k)], all.energy[at(s)],
+        visit({patches.patch_cells.item[at(k)], pool, s, patches.patch_share[at(k)], all.energy[at(s)],
                solid.nodes()[s], all.of(solid, s)});
       }
     }
     return {};
   }
-  auto data = std::make_shared<const SolidData>(cell_by_cell(patches));
+  std::vector<Index> patch;
+  auto data = std::make_shared<const SolidData>(cell_by_cell(patches, patch));
   Lists cells;
   for (const Index c : data->cell) cells.push({&c, 1});
   auto energy = region.material->distortional();
@@ -99,7 +102,8 @@ Result<void> CellTerms::patch_forces(const RegionData& region, const Force& visi
   const EnergyForces each(apart, request, parallel_);
   double sum = 0, whole = 0, size = 0;
   for (Index s = 0; s < apart.stencils(); ++s) {
-    visit({data->cell[at(s)], 1, each.energy[at(s)], apart.nodes()[s], each.of(apart, s)});
+    visit(
+        {data->cell[at(s)], pool, patch[at(s)], 1, each.energy[at(s)], apart.nodes()[s], each.of(apart, s)});
     sum += each.energy[at(s)];
   }
   for (const double e : all.energy) whole += e, size += std::abs(e);

@@ -18,6 +18,7 @@ class CellTerms {
   // d force_a/d factor of the cell = share * forces[a], and the same of the energy.
   struct Stencil {
     Index cell = -1;
+    Index pool = -1, patch = -1;  // of edge-smoothed bodies: the stencil of the elastic pool
     double share = 1;
     double energy = 0;
     std::span<const Index> nodes;

@@ -1,7 +1,5 @@
 #include "engine/world/equations.h"
 
-#include <limits>
-
 #include "engine/solve/evaluator.h"
 
 namespace isochor {
@@ -19,21 +17,10 @@ void Equations::add(double factor, const Equations& other) {
   add_to(force, factor, other.force);
   add_to(theta, factor, other.theta);
   add_to(position, factor, other.position);
-  add_to(gauges, factor, other.gauges);
-  energy += factor * other.energy;
+  add_to(seen, factor, other.seen);
 }
 
-double gauge_value(const EffectInstance& effect, const std::string& quantity, const System& system,
-                   const State& state) {
-  std::vector<Gauge> all;
-  effect.gauges({system, state}, all);
-  for (const Gauge& g : all) {
-    if (g.quantity == quantity) return g.value;
-  }
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
-Equations equations_at(const EquationsAt& where, const State& state, std::span<const GaugeName> gauges) {
+Equations equations_at(const EquationsAt& where, const State& state, std::span<const Watched> watched) {
   const System& s = where.system;
   SaddleProblem p = where.data.problem(s, state, state.t);
   if (where.inertia) where.inertia->add_to(p);
@@ -59,14 +46,12 @@ Equations equations_at(const EquationsAt& where, const State& state, std::span<c
     s.evaluate_law(law, p.increment.t0, p.increment.t1, p.memory, state.lambda, strain, {});
     for (std::size_t r = 0; r < strain.size(); ++r) out.theta[first + r] -= strain[r];
   }
-  out.energy = assembly.energy() + compliance_energy(s, state.lambda);
   out.position.assign(p.position.begin(), p.position.end());
-  for (const GaugeName& g : gauges)
-    out.gauges.push_back(gauge_value(*where.instances[at(g.effect)], g.quantity, s, state));
+  for (const Watched& one : watched) out.seen.push_back(watched_value(where, state, one));
   return out;
 }
 
-Result<Equations> World::Impl::equations_beside(Description next, std::span<const GaugeName> gauges_wanted,
+Result<Equations> World::Impl::equations_beside(Description next, std::span<const Watched> watched,
                                                 const Inertia* inertia) {
   auto built = build_beside(next);
   if (!built) return built.failure();
@@ -83,8 +68,8 @@ Result<Equations> World::Impl::equations_beside(Description next, std::span<cons
     return Error{"the scene has other unknowns or rows then, so that there is no derivative"};
   IncrementData its_data(*changed, amounts.gravity, state, weight);
   Assembly its_assembly(changed, *parallel);
-  return equations_at({*changed, its_assembly, its_data, built.value().instances, inertia}, state,
-                      gauges_wanted);
+  return equations_at({*changed, its_assembly, its_data, built.value().instances, next.builder, inertia},
+                      state, watched);
 }
 
 }  // namespace isochor

@@ -1,6 +1,7 @@
 // The equations of a scene at the state of a world, and a changed scene beside the present one.
 #pragma once
 
+#include "engine/world/watched.h"
 #include "engine/world/world_impl.h"
 
 namespace isochor {
@@ -10,23 +11,13 @@ struct Equations {
   std::vector<Vec3> force;     // of all nodes: d(energy + lambda . phi)/dx less loads [N]
   std::vector<double> theta;   // phi - target - C lambda
   std::vector<Vec3> position;  // targets of given nodes, as SaddleProblem::position
-  std::vector<double> gauges;  // that somebody asked for
-  double energy = 0;           // of stencils and compliances [J]
+  std::vector<double> seen;    // of what somebody watches
 
   Equations() = default;
-  explicit Equations(const System& s, std::size_t gauge_count = 0)
-      : force(at(s.nodes())), theta(at(s.rows())), position(s.free_bases().size()), gauges(gauge_count) {}
+  explicit Equations(const System& s, std::size_t watched = 0)
+      : force(at(s.nodes())), theta(at(s.rows())), position(s.free_bases().size()), seen(watched) {}
   void add(double factor, const Equations& other);
 };
-
-// A gauge of an effect.
-struct GaugeName {
-  Index effect = -1;
-  std::string quantity;
-};
-// NaN: the effect has none of that name.
-double gauge_value(const EffectInstance& effect, const std::string& quantity, const System& system,
-                   const State& state);
 
 // What an increment in which bodies move adds at the place where it is evaluated.
 struct Inertia {
@@ -46,8 +37,9 @@ struct EquationsAt {
   Assembly& assembly;
   IncrementData& data;
   const std::vector<std::unique_ptr<EffectInstance>>& instances;
+  const Builder& builder;
   const Inertia* inertia = nullptr;  // null: there is none
 };
-Equations equations_at(const EquationsAt& where, const State& state, std::span<const GaugeName> gauges);
+Equations equations_at(const EquationsAt& where, const State& state, std::span<const Watched> watched);
 
 }  // namespace isochor

@@ -127,9 +127,10 @@ Result<std::vector<ErrorOrigin>> World::error_origins(std::span<const Output> ou
   std::string why;
   Impl::Equilibrium eq(w);
   for (const Output& o : outputs) {
-    if (o.kind == Output::Kind::gauge) eq.gauges.push_back({static_cast<Index>(o.effect), o.quantity});
-    if (o.kind != Output::Kind::gauge && o.kind != Output::Kind::reaction) continue;
-    if (auto r = check(o.effect); !r) return r.failure();
+    if (names_effect(o)) {
+      if (auto r = check(o.effect); !r) return r.failure();
+    }
+    if (auto r = eq.watch(o); !r) return r.failure();
   }
   if (w.settled)
     why = "the state is unfinished";

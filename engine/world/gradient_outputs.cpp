@@ -53,16 +53,64 @@ Output Output::reaction(EffectId effect, const Vec3& force, const Vec3& moment) 
 }
 
 Output Output::elastic_energy() {
+  return energy("elastic");
+}
+
+Output Output::energy(std::string part) {
   Output o;
   o.kind = Kind::energy;
+  o.quantity = std::move(part);
   return o;
 }
 
+Output Output::square(BodyId body, std::vector<Index> nodes, std::vector<Vec3> weights, double target) {
+  Output o = positions(body, std::move(nodes), std::move(weights));
+  o.kind = Kind::square;
+  o.target = target;
+  return o;
+}
+
+Output Output::stress(BodyId body, Index cell, std::string measure) {
+  Output o;
+  o.kind = Kind::stress;
+  o.body = body;
+  o.cell = cell;
+  o.quantity = std::move(measure);
+  return o;
+}
+
+Output Output::effect_force(EffectId effect, BodyId body, const Vec3& direction) {
+  Output o;
+  o.kind = Kind::force;
+  o.effect = effect;
+  o.body = body;
+  o.force = direction;
+  return o;
+}
+
+Output Output::of_positions(BodyId body, Function function) {
+  Output o;
+  o.kind = Kind::function;
+  o.body = body;
+  o.function = std::move(function);
+  return o;
+}
+
+void OutputSeed::add(const OutputSeed& other) {
+  value += other.value;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] += other.x[i];
+    through[i] += other.through[i];
+    v[i] += other.v[i];
+  }
+  for (std::size_t r = 0; r < multiplier.size(); ++r) multiplier[r] += other.multiplier[r];
+  held.insert(held.end(), other.held.begin(), other.held.end());
+  energies += other.energies;
+  stresses.insert(stresses.end(), other.stresses.begin(), other.stresses.end());
+}
+
 Result<OutputSeed> World::Impl::Equilibrium::seed_of(const Output& output) {
-  OutputSeed seed;
-  seed.x.resize(w.state.x.size());
-  seed.through.resize(w.state.x.size());
-  seed.multiplier.assign(w.state.lambda.size(), 0.0);
+  OutputSeed seed(w.state.x.size(), w.state.lambda.size());
   for (std::size_t k = 0; k < output.vectors.size(); ++k) {
     if (!finite(output.vectors[k])) {
       return Error{"gradients: the vector " + std::to_string(k) + " is " + point_text(output.vectors[k]) +
@@ -73,18 +121,40 @@ Result<OutputSeed> World::Impl::Equilibrium::seed_of(const Output& output) {
     return Error{"gradients: the force is " + point_text(output.force) + " and the moment " +
                  point_text(output.moment) + "; give finite numbers"};
   }
-  if (output.kind == Output::Kind::energy) {
-    seed_energy(seed);
-    return seed;
+  Result<void> done;
+  switch (output.kind) {
+    case Output::Kind::energy:
+      seed_energy(output, seed);
+      break;
+    case Output::Kind::gauge:
+      done = seed_gauge(output, seed);
+      break;
+    case Output::Kind::reaction:
+      done = seed_reaction(output, seed);
+      break;
+    case Output::Kind::stress:
+      done = seed_stress(output, seed);
+      break;
+    case Output::Kind::force:
+      seed_force(output, seed);
+      break;
+    case Output::Kind::function:
+      done = seed_function(output, seed);
+      break;
+    case Output::Kind::positions:
+    case Output::Kind::distance:
+    case Output::Kind::square:
+      done = seed_positions(output, seed);
+      break;
   }
-  if (output.kind == Output::Kind::gauge) {
-    if (auto r = seed_gauge(output, seed); !r) return r.failure();
-    return seed;
+  if (!done) return done.failure();
+  if (!std::isfinite(seed.value)) {
+    return Error{"gradients: the output is " + number(seed.value) + "; it has no derivative there"};
   }
-  if (output.kind == Output::Kind::reaction) {
-    if (auto r = seed_reaction(output, seed); !r) return r.failure();
-    return seed;
-  }
+  return seed;
+}
+
+Result<void> World::Impl::Equilibrium::seed_positions(const Output& output, OutputSeed& seed) {
   if (auto r = check_body(output.body, "an output"); !r) return r.failure();
   const BodyData& body = w.said.builder.body(output.body);
   if (output.at_point) {
@@ -93,7 +163,7 @@ Result<OutputSeed> World::Impl::Equilibrium::seed_of(const Output& output) {
     for (std::size_t k = 0; k < point.value().nodes.size(); ++k)
       seed.x[at(point.value().nodes[k])] += point.value().weight[k] * output.vectors[0];
     seed.value = dot(output.vectors[0], point.value().at(w.state.x));
-    return seed;
+    return {};
   }
   if (output.nodes.empty() || output.nodes.size() != output.vectors.size()) {
     return Error{"gradients: an output names " + std::to_string(output.nodes.size()) + " nodes and " +
@@ -116,7 +186,27 @@ Result<OutputSeed> World::Impl::Equilibrium::seed_of(const Output& output) {
       slot += output.vectors[k];
     }
   }
-  return seed;
+  if (output.kind != Output::Kind::square) return {};
+  if (!std::isfinite(output.target))
+    return Error{"gradients: target = " + number(output.target) + "; give a finite number"};
+  const double off = seed.value - output.target;
+  for (Vec3& v : seed.x) v = off * v;
+  seed.value = 0.5 * off * off;
+  return {};
+}
+
+Result<void> World::Impl::Equilibrium::seed_function(const Output& output, OutputSeed& seed) {
+  if (auto r = check_body(output.body, "an output"); !r) return r.failure();
+  if (!output.function) return Error{"gradients: there is no function of positions"};
+  const BodyData& body = w.said.builder.body(output.body);
+  const auto first = at(body.first_node), count = at(body.mesh.node_count());
+  const auto made = output.function(std::span<const Vec3>(w.state.x).subspan(first, count),
+                                    std::span(seed.x).subspan(first, count));
+  if (!made) return Error{"gradients: the function of positions: " + made.error()};
+  seed.value = made.value();
+  if (std::isfinite(seed.value) && std::all_of(seed.x.begin(), seed.x.end(), finite)) return {};
+  return Error{"gradients: the function of positions makes " + number(seed.value) +
+               ", or a gradient that is not finite; give finite numbers"};
 }
 
 Result<void> World::Impl::Equilibrium::seed_gauge(const Output& output, OutputSeed& seed) {
@@ -130,10 +220,10 @@ Result<void> World::Impl::Equilibrium::seed_gauge(const Output& output, OutputSe
     if (g.quantity != output.quantity) continue;
     const System& s = w.system();
     const RowPool& rows = *s.parts().row_pools[at(g.row_pool)];
-    for (std::size_t k = 0; k < gauges.size(); ++k) {
-      if (gauges[k].effect == static_cast<Index>(e) && gauges[k].quantity == output.quantity)
-        seed.gauge = static_cast<Index>(k);
-    }
+    Watched one;
+    one.effect = static_cast<Index>(e);
+    one.quantity = output.quantity;
+    seed.held.push_back(place_of(one));
     if (g.multiplier) {
       // One that is given follows from parameters alone.
       if (rows.law == RowLaw::compliant) seed.multiplier[at(s.first_row(g.row_pool) + g.row)] += g.factor;
@@ -164,14 +254,17 @@ Result<void> World::Impl::Equilibrium::seed_gauge(const Output& output, OutputSe
                "every gauge"};
 }
 
-void World::Impl::Equilibrium::seed_energy(OutputSeed& seed) {
-  const System& s = w.system();
-  const std::vector<double> none(at(s.rows()), 0.0), none_given(at(s.prescribed_rows()), 0.0);
-  w.assembly().evaluate(Want::gradient, Definiteness::exact, w.state.x, none, none_given);
-  w.assembly().residual(seed.x);
-  add_compliance(s, 1, w.state.lambda, seed.multiplier);
-  seed.value = here.energy;
-  seed.energy = true;
+// What forces on all nodes along `way` feel of positions and of multipliers: the transpose of how they
+// change.
+void World::Impl::Equilibrium::forces_back(std::span<const Vec3> way, std::span<Vec3> x,
+                                           std::span<double> row) {
+  w.assembly().hessian_times(way, x);
+  w.assembly().jacobian_times(way, row);
+  if (lag) lag->add_transposed(1, way, x, row);
+  if (!inertia || !(inertia->mass_scale > 0)) return;
+  std::vector<Vec3> heavy(way.size());
+  w.assembly().mass_times(way, heavy);
+  for (std::size_t i = 0; i < heavy.size(); ++i) x[i] += inertia->mass_scale * heavy[i];
 }
 
 // J = sum over held directions d of (force + moment x position) . d (d . R).
@@ -194,25 +287,19 @@ Result<void> World::Impl::Equilibrium::seed_reaction(const Output& output, Outpu
   // Forces of supports follow the unknowns.
   std::vector<Vec3> force(seed.x.size());
   std::vector<double> row(seed.multiplier.size());
-  w.assembly().hessian_times(seed.through, force);
-  w.assembly().jacobian_times(seed.through, row);
+  forces_back(seed.through, force, row);
   for (std::size_t i = 0; i < force.size(); ++i) seed.x[i] += force[i];
   for (std::size_t r = 0; r < row.size(); ++r) seed.multiplier[r] += row[r];
   return {};
 }
 
 Result<Adjoint> World::Impl::Equilibrium::adjoint_of(const OutputSeed& seed) {
-  const std::vector<Vec3> none(seed.x.size());
-  if (auto r = solve(seed.x, seed.multiplier, none); !r) return r.failure();
+  if (auto r = solve_transposed(seed.x, seed.multiplier); !r) return r.failure();
   Adjoint out{dx, seed.x, dlambda};
   std::vector<Vec3> force(dx.size()), pull(dx.size());
-  w.assembly().hessian_times(dx, force);
+  std::vector<double> row(dlambda.size());
+  forces_back(dx, force, row);
   w.assembly().constraint_force(dlambda, pull);
-  if (inertia && inertia->mass_scale > 0) {
-    std::vector<Vec3> heavy(dx.size());
-    w.assembly().mass_times(dx, heavy);
-    for (std::size_t i = 0; i < dx.size(); ++i) force[i] += inertia->mass_scale * heavy[i];
-  }
   for (std::size_t i = 0; i < dx.size(); ++i) {
     out.given[i] -= force[i] + pull[i];
     out.force[i] -= seed.through[i];

@@ -18,6 +18,14 @@ Parameter Parameter::amount_of(EffectId effect) {
   return p;
 }
 
+Parameter Parameter::curve_point(EffectId effect, Curve curve, Index number) {
+  Parameter p = amount_of(effect);
+  p.kind = Kind::curve;
+  p.curve = std::move(curve);
+  p.number = number;
+  return p;
+}
+
 Parameter Parameter::force_at(BodyId body, const Vec3& point, const Vec3& force) {
   Parameter p;
   p.kind = Kind::force;
@@ -140,7 +148,7 @@ bool is_linear(const Equations& up, const Equations& here, const Equations& down
   vectors(up.force, here.force, down.force);
   vectors(up.position, here.position, down.position);
   numbers(up.theta, here.theta, down.theta);
-  numbers(up.gauges, here.gauges, down.gauges);
+  numbers(up.seen, here.seen, down.seen);
   return linear;
 }
 
@@ -184,7 +192,7 @@ Result<CellTerms> World::Impl::Equilibrium::cell_terms(BodyId body) const {
 }
 
 Result<Equations> World::Impl::Equilibrium::change_by(const Parameter& p) {
-  Equations change(w.system(), gauges.size());
+  Equations change(w.system(), watched.size());
   if (!finite(p.vector) || !finite(p.point)) {
     return Error{"gradients: the vector is " + point_text(p.vector) + " and the point " +
                  point_text(p.point) + " m; give finite numbers"};
@@ -202,11 +210,15 @@ Result<Equations> World::Impl::Equilibrium::change_by(const Parameter& p) {
       if (!point) return point.failure();
       for (std::size_t k = 0; k < point.value().nodes.size(); ++k)
         change.force[at(point.value().nodes[k])] -= point.value().weight[k] * p.vector;
+      add_work(Watched::What::loads, change);
       return change;
     }
     case Parameter::Kind::gravity:
       for (std::size_t i = 0; i < change.force.size(); ++i) change.force[i] -= w.data->weight()[i] * p.vector;
+      add_work(Watched::What::gravity, change);
       return change;
+    case Parameter::Kind::curve:
+      return change_by_curve(p);
     case Parameter::Kind::density:
       return change_by_density(p);
     case Parameter::Kind::stiffness:
@@ -235,7 +247,7 @@ Result<Equations> World::Impl::Equilibrium::change_by_amount(const Parameter& p)
   }
   const auto moved = [&](double by) {
     amount->shift(by);
-    Equations out = equations_at(present(), w.state, gauges);
+    Equations out = equations_at(present(), w.state, watched);
     amount->shift(0);
     return out;
   };
@@ -243,7 +255,7 @@ Result<Equations> World::Impl::Equilibrium::change_by_amount(const Parameter& p)
   const double far = std::max(1.0, std::abs(amount->value(w.state.t)));
   Equations up = moved(far);
   const Equations down = moved(-far);
-  Equations change(w.system(), gauges.size());
+  Equations change(w.system(), watched.size());
   if (is_linear(up, here, down)) {
     change.add(0.5 / far, up);
     change.add(-0.5 / far, down);
@@ -253,6 +265,41 @@ Result<Equations> World::Impl::Equilibrium::change_by_amount(const Parameter& p)
       if (central.at[k] != 0) change.add(central.weight[k] / h, moved(central.at[k] * h));
     }
   }
+  return change;
+}
+
+// Loads that do not depend on positions have changed by minus the forces of the change so far.
+void World::Impl::Equilibrium::add_work(Watched::What energy, Equations& change) const {
+  Watched one;
+  one.what = energy;
+  const Index k = place_of(one);
+  if (k >= 0) change.seen[at(k)] += work_on(change.force, w.state.x, w.system().parts().rest);
+}
+
+// The amount moves by as much of the point as the curve has of it now.
+Result<Equations> World::Impl::Equilibrium::change_by_curve(const Parameter& p) {
+  const auto e = static_cast<std::size_t>(p.effect);
+  const Amount* amount = w.instances[e]->amount();
+  const std::string who = "gradients: curve of effect \"" + w.said.sources[e]->name() + "\": ";
+  const auto points = static_cast<Index>(p.curve.points.size());
+  if (!amount) return Error{who + "it has no amount to change"};
+  if (p.number < 0 || p.number >= points)
+    return Error{who + "there is no point " + std::to_string(p.number) + "; it has " +
+                 std::to_string(points) + ", by number from 0"};
+  const double said = evaluate(p.curve, w.state.t), now = amount->value(w.state.t);
+  if (!(std::abs(said - now) <= 1e-12 * std::max(std::abs(said), std::abs(now)))) {
+    return Error{who + "at " + number(w.state.t) + " s it is " + number(said) + ", but the amount is " +
+                 number(now) + "; give the curve that the amount follows, which no host has set since"};
+  }
+  Curve unit = p.curve;
+  for (auto& point : unit.points) point[1] = 0;
+  unit.points[at(p.number)][1] = 1;
+  const double part = evaluate(unit, w.state.t);
+  Equations change(w.system(), watched.size());
+  if (part == 0) return change;
+  auto whole = change_by_amount(p);
+  if (!whole) return whole;
+  change.add(part, whole.value());
   return change;
 }
 
@@ -272,9 +319,10 @@ Result<Equations> World::Impl::Equilibrium::change_by_density(const Parameter& p
                                                   body.regions[r].cells, 1, volume);
   }
   const Vec3 g = w.data->gravity(w.state.t);
-  Equations change(w.system(), gauges.size());
+  Equations change(w.system(), watched.size());
   for (std::size_t i = 0; i < volume.size(); ++i) change.force[i] -= volume[i] * g;
-  if (inertia && inertia->mass_scale > 0) add_mass_change(body, regions.value(), change);
+  add_work(Watched::What::gravity, change);
+  if (inertia) add_mass_change(body, regions.value(), change);
   return change;
 }
 
@@ -292,24 +340,21 @@ Result<Equations> World::Impl::Equilibrium::density_beside(const Parameter& p,
       if (auto set = next.builder.set_density(p.body, region.name, region.density + more); !set)
         return set.failure();
     }
-    return w.equations_beside(std::move(next), gauges, inertia);
+    return w.equations_beside(std::move(next), watched, inertia);
   };
   auto more = at_density(by), present_one = at_density(0);
   if (!more) return Error{"gradients: density: " + more.error()};
   if (!present_one) return Error{"gradients: density: " + present_one.error()};
-  Equations change(w.system(), gauges.size());
+  Equations change(w.system(), watched.size());
   change.add(1 / by, more.value());
   change.add(-1 / by, present_one.value());
   return change;
 }
 
-// What resists, per unit of density.
+// What resists, and kinetic energy, per unit of density.
 void World::Impl::Equilibrium::add_mass_change(const BodyData& body, std::span<const std::size_t> regions,
                                                Equations& change) const {
   const auto rest = w.system().parts().rest;
-  std::vector<Vec3> off(rest.size());
-  for (std::size_t i = 0; i < off.size(); ++i)
-    off[i] = inertia->mass_scale * (w.state.x[i] - inertia->predicted[i]);
   std::vector<double> mass(rest.size(), 0);
   std::vector<MassEntry> entries;
   for (const std::size_t r : regions) {
@@ -319,11 +364,24 @@ void World::Impl::Equilibrium::add_mass_change(const BodyData& body, std::span<c
     else
       add_consistent_mass(*body.reference, rest, body.global_cells, cells, 1, entries);
   }
-  for (std::size_t i = 0; i < off.size(); ++i) change.force[i] += mass[i] * off[i];
-  for (const MassEntry& e : entries) {
-    change.force[at(e.row)] += e.value * off[at(e.col)];
-    if (e.row != e.col) change.force[at(e.col)] += e.value * off[at(e.row)];
-  }
+  const auto add_heavy = [&](std::span<const Vec3> v, std::span<Vec3> to) {
+    for (std::size_t i = 0; i < v.size(); ++i) to[i] += mass[i] * v[i];
+    for (const MassEntry& e : entries) {
+      to[at(e.row)] += e.value * v[at(e.col)];
+      if (e.row != e.col) to[at(e.col)] += e.value * v[at(e.row)];
+    }
+  };
+  std::vector<Vec3> off(rest.size());
+  for (std::size_t i = 0; i < off.size(); ++i)
+    off[i] = inertia->mass_scale * (w.state.x[i] - inertia->predicted[i]);
+  add_heavy(off, change.force);
+  Watched kinetic;
+  kinetic.what = Watched::What::kinetic;
+  const Index k = place_of(kinetic);
+  if (k < 0) return;
+  std::vector<Vec3> moving(rest.size());
+  add_heavy(w.state.v, moving);
+  for (std::size_t i = 0; i < moving.size(); ++i) change.seen[at(k)] += 0.5 * dot(moving[i], w.state.v[i]);
 }
 
 // Nothing of an increment depends on the velocities before the first.
@@ -336,7 +394,7 @@ Result<Equations> World::Impl::Equilibrium::check_motion(const Parameter& p) con
                  " vectors, body \"" + body.name + "\" " + std::to_string(body.mesh.node_count()) +
                  " nodes; give one a node of World::mesh(), all finite"};
   }
-  return Equations(w.system(), gauges.size());
+  return Equations(w.system(), watched.size());
 }
 
 Result<Equations> World::Impl::Equilibrium::change_by_stiffness(const Parameter& p) {
@@ -349,20 +407,25 @@ Result<Equations> World::Impl::Equilibrium::change_by_stiffness(const Parameter&
   for (const std::size_t r : regions.value()) {
     for (const Index c : body.regions[r].cells) rate[at(c)] = 1;
   }
-  Equations change(w.system(), gauges.size());
+  Equations change(w.system(), watched.size());
   const auto terms = cell_terms(p.body);
   if (!terms) return terms.failure();
+  double energy = 0;
   auto done = terms.value().each_force([&](const CellTerms::Stencil& stencil) {
     const double factor = stencil.share * rate[at(stencil.cell)];
-    change.energy += factor * stencil.energy;
+    energy += factor * stencil.energy;
     for (std::size_t a = 0; a < stencil.nodes.size(); ++a)
       change.force[at(stencil.nodes[a])] += factor * stencil.forces[a];
   });
   if (!done) return done.failure();
   terms.value().each_row([&](Index cell, Index row, double value) {
     change.theta[at(row)] += rate[at(cell)] * value;
-    change.energy -= 0.5 * rate[at(cell)] * value * w.state.lambda[at(row)];
+    energy -= 0.5 * rate[at(cell)] * value * w.state.lambda[at(row)];
   });
+  Watched elastic;
+  elastic.what = Watched::What::elastic;
+  if (const Index k = place_of(elastic); k >= 0) change.seen[at(k)] = energy;
+  add_stress_of(rate, p.body, change);
   return change;
 }
 
@@ -429,7 +492,7 @@ Result<Equations> World::Impl::Equilibrium::change_beside(const Parameter& p) {
   const auto equations = [&](int steps) -> Result<Equations> {
     auto next = beside(p, value + steps * h, refused);
     if (!next) return Error{who + next.error()};
-    auto out = w.equations_beside(std::move(next).value(), gauges, inertia);
+    auto out = w.equations_beside(std::move(next).value(), watched, inertia);
     if (!out) return Error{who + out.error()};
     return out;
   };
@@ -452,7 +515,7 @@ Result<Equations> World::Impl::Equilibrium::change_beside(const Parameter& p) {
     bool end = false;
     if (auto next = beside(p, value + d->at[2] * h, end); !next && end) how = d == &above ? &below : &above;
   }
-  Equations change(w.system(), gauges.size());
+  Equations change(w.system(), watched.size());
   for (std::size_t k = 0; k < how->at.size(); ++k) {
     if (how->weight[k] == 0) continue;
     if (how->at[k] == 0) {
@@ -481,7 +544,9 @@ std::vector<Vec3> World::Impl::Equilibrium::way_of(std::span<const Vec3> positio
 }
 
 double World::Impl::Equilibrium::held(const OutputSeed& seed, const Equations& change) {
-  return (seed.gauge >= 0 ? change.gauges[at(seed.gauge)] : 0) + (seed.energy ? change.energy : 0);
+  double sum = 0;
+  for (const Index k : seed.held) sum += k >= 0 ? change.seen[at(k)] : 0;
+  return sum;
 }
 
 double World::Impl::Equilibrium::by_adjoint(const OutputSeed& seed, const Adjoint& adjoint,
@@ -509,15 +574,17 @@ Result<std::vector<double>> World::Impl::Equilibrium::by_cells(const OutputSeed&
   std::vector<double> out(at(w.said.builder.body(body).mesh.cell_count()), 0);
   const auto terms = cell_terms(body);
   if (!terms) return terms.failure();
+  const StressShares stress = stress_shares(seed, body);
+  for (const auto& [cell, value] : stress.own) out[at(cell)] += value;
   auto done = terms.value().each_force([&](const CellTerms::Stencil& stencil) {
-    double sum = seed.energy ? stencil.energy : 0;
+    double sum = seed.energies * stencil.energy + stress.of(stencil, w.state.x);
     for (std::size_t a = 0; a < stencil.nodes.size(); ++a)
       sum -= dot(adjoint.force[at(stencil.nodes[a])], stencil.forces[a]);
     out[at(stencil.cell)] += stencil.share * sum;
   });
   if (!done) return done.failure();
   terms.value().each_row([&](Index cell, Index row, double value) {
-    const double held = seed.energy ? 0.5 * w.state.lambda[at(row)] : 0;
+    const double held = 0.5 * seed.energies * w.state.lambda[at(row)];
     out[at(cell)] -= (adjoint.row[at(row)] + held) * value;
   });
   return out;

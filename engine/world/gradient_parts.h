@@ -2,20 +2,40 @@
 // parameters as changes of the equations.
 #pragma once
 
+#include <map>
+
 #include "engine/world/cell_terms.h"
 #include "engine/world/equations.h"
+#include "engine/world/lag_terms.h"
 #include "isochor/gradients.h"
 
 namespace isochor {
 
-// How an output depends on the unknowns: dJ = x . dx + multiplier . dlambda + dgauge + through . dR, where R
-// are the forces of supports.
+class CellStress;
+
+// Whether the effect counts.
+bool names_effect(const Output& output);
+bool names_effect(const Parameter& parameter);
+
+// How an output depends on the unknowns: dJ = x . dx + multiplier . dlambda + dseen + through . dR, where R
+// are the forces of supports; and in motion + v . dv.
 struct OutputSeed {
+  OutputSeed() = default;
+  OutputSeed(std::size_t nodes, std::size_t rows) : x(nodes), through(nodes), v(nodes), multiplier(rows, 0) {}
+  void add(const OutputSeed& other);
+
   double value = 0;
-  std::vector<Vec3> x, through;
+  std::vector<Vec3> x, through, v;
   std::vector<double> multiplier;
-  bool energy = false;
-  Index gauge = -1;  // what a parameter changes of it beside: index into Equilibrium::gauges
+  // What a parameter changes of it beside: indices into Equilibrium::watched.
+  std::vector<Index> held;
+  // What the stiffness of a cell changes of it beside: how many elastic energies it has, and stresses.
+  double energies = 0;
+  struct OfStress {
+    Index body = -1, cell = -1;
+    Stress weights{};
+  };
+  std::vector<OfStress> stresses;
 };
 
 // What the solution of an output's own system says: a change dR of the equations changes the output by
@@ -32,11 +52,16 @@ struct World::Impl::Equilibrium {
   // Refuses what is no equilibrium, or has no derivative.
   Result<void> linearize(bool unstable);
 
+  // gradient_measures.cpp
+  // Notes what is to be watched for an output; before linearize(). The effect that it names is there.
+  Result<void> watch(const Output& output);
   // gradient_outputs.cpp
   Result<OutputSeed> seed_of(const Output& output);
   // The solution of A z = (load, row) with given coordinates moved by `way`, in dx and dlambda.
   Result<void> solve(std::span<const Vec3> load, std::span<const double> row, std::span<const Vec3> way);
   Result<Adjoint> adjoint_of(const OutputSeed& seed);
+  // Of A^T z = (load, row), for symmetric matrices as solve().
+  Result<void> solve_transposed(std::span<const Vec3> load, std::span<const double> row);
 
   // gradient_parameters.cpp
   // dR/dp, all that is in Equations.
@@ -54,7 +79,8 @@ struct World::Impl::Equilibrium {
   SaddlePoint& method;
   SaddleReport report;
   Equations here;
-  std::vector<GaugeName> gauges;
+  std::vector<Watched> watched;
+  std::optional<LagTerms> lag;  // of an unsymmetric matrix
   std::vector<Vec3> dx;
   std::vector<double> dlambda;
 
@@ -64,15 +90,42 @@ struct World::Impl::Equilibrium {
     if (inertia) inertia->add_to(p);
     return p;
   }
-  EquationsAt present() { return {w.system(), w.assembly(), *w.data, w.instances, inertia}; }
+  EquationsAt present() { return {w.system(), w.assembly(), *w.data, w.instances, w.said.builder, inertia}; }
   Result<void> check_balance();
   Result<void> seed_gauge(const Output& output, OutputSeed& seed);
   Result<void> seed_reaction(const Output& output, OutputSeed& seed);
-  void seed_energy(OutputSeed& seed);
+  Result<void> seed_positions(const Output& output, OutputSeed& seed);
+  Result<void> seed_function(const Output& output, OutputSeed& seed);
+  void forces_back(std::span<const Vec3> way, std::span<Vec3> x, std::span<double> row);
+  // gradient_measures.cpp
+  Index place_of(const Watched& one) const;
+  Result<void> watch_stress(const Output& output);
+  Result<void> watch_force(const Output& output);
+  void take_watched(const Watched& one, OutputSeed& seed) const;
+  void seed_energy(const Output& output, OutputSeed& seed);
+  void seed_elastic(OutputSeed& seed);
+  void seed_pressures(OutputSeed& seed);
+  Result<void> seed_stress(const Output& output, OutputSeed& seed);
+  void seed_force(const Output& output, OutputSeed& seed);
+  void evaluate_here();
+  void add_pool_forces(Index pool, std::span<const Vec3> along, OutputSeed& seed);
+  void add_stress_of_rows(const CellStress& cell, RecoveryInput in, double weight,
+                          std::span<double> multiplier) const;
+  // What a factor on the stiffness of cells changes of stresses that are watched.
+  void add_stress_of(std::span<const double> rate, BodyId body, Equations& change);
+  // What the stiffness of each cell changes of the stresses that an output is of.
+  struct StressShares {
+    std::vector<std::pair<Index, double>> own;        // cells that have their own energy, and how much
+    std::map<std::pair<Index, Index>, Stress> patch;  // by pool and stencil: of their stress
+    double of(const CellTerms::Stencil& stencil, std::span<const Vec3> x) const;
+  };
+  StressShares stress_shares(const OutputSeed& seed, BodyId body);
   Result<void> respond(double factor, std::span<const Vec3> load, std::span<const double> row,
                        std::span<const Vec3> way, std::vector<Vec3>& x, std::vector<double>& lambda);
   Result<void> check_body(BodyId body, const char* who) const;
   Result<Equations> change_by_amount(const Parameter& parameter);
+  Result<Equations> change_by_curve(const Parameter& parameter);
+  void add_work(Watched::What energy, Equations& change) const;
   Result<Equations> change_by_stiffness(const Parameter& parameter);
   Result<Equations> change_by_density(const Parameter& parameter);
   Result<Equations> density_beside(const Parameter& parameter, std::span<const std::size_t> regions);

@@ -4,7 +4,8 @@
 //   2. Every output becomes a right-hand side: how it depends on positions, multipliers and supports' forces.
 //   3. Adjoint: one solve an output; then each parameter is what the solution makes of the change dR/dp that
 //      it brings to the equations. Tangent: one solve a parameter with dR/dp; then each output along it.
-// The matrix is symmetric but where friction is coupled, so both use the same factors.
+// The matrix is symmetric but where friction is coupled, so both use the same factors; there the adjoint is
+// found from solves with the matrix itself (solve_transposed()).
 #include "isochor/gradients.h"
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 
 #include "engine/base/out_of_memory.h"
 #include "engine/base/text.h"
+#include "engine/solvers/gmres.h"
 #include "engine/step/time_scheme.h"
 #include "engine/world/gradient_parts.h"
 
@@ -57,7 +59,7 @@ World::Impl::Equilibrium::Equilibrium(Impl& world, const Inertia* its_inertia)
 Result<void> World::Impl::Equilibrium::check_balance() {
   constexpr double limit = 1e-5;
   const System& s = w.system();
-  here = equations_at(present(), w.state, gauges);
+  here = equations_at(present(), w.state, watched);
   std::vector<double> magnitude(here.force.size());
   w.assembly().residual_magnitude(magnitude);
   // Where nothing is strained, forces are rounding errors of a stiff body.
@@ -98,6 +100,10 @@ Result<void> World::Impl::Equilibrium::linearize(bool unstable) {
     return Error{"gradients: the matrix of the equilibrium is singular" +
                  (report.message.empty() ? std::string() : " (" + report.message + ")") +
                  ": a limit point, or a body that nothing holds; move the load away from there"};
+  }
+  if (w.system().has_lag()) {
+    evaluate_here();
+    lag.emplace(w.system(), w.assembly(), w.state.x);
   }
   const Index directions = report.negative_pivots < 0 ? 0 : report.negative_pivots - w.system().rows();
   if (directions == 0 || unstable) return {};
@@ -152,6 +158,66 @@ Result<void> World::Impl::Equilibrium::solve(std::span<const Vec3> load, std::sp
   return {};
 }
 
+bool names_effect(const Output& o) {
+  return o.kind == Output::Kind::gauge || o.kind == Output::Kind::reaction || o.kind == Output::Kind::force;
+}
+
+bool names_effect(const Parameter& p) {
+  return p.kind == Parameter::Kind::amount || p.kind == Parameter::Kind::constant ||
+         p.kind == Parameter::Kind::curve;
+}
+
+// With A^T = A + D, where D = [L^T - L, -l; l^T, 0] is about what rubs alone, z = A^-1 (b + w) and
+//   w + D A^-1 w = - D A^-1 b,
+// which takes few steps of GMRES, each a solve with A.
+Result<void> World::Impl::Equilibrium::solve_transposed(std::span<const Vec3> load,
+                                                        std::span<const double> row) {
+  const std::vector<Vec3> nowhere(load.size());
+  if (auto r = solve(load, row, nowhere); !r || !lag) return r;
+  const std::size_t nodes = load.size(), size = 3 * nodes + row.size();
+  constexpr int most = 60;
+  constexpr double exact = 1e-13;
+  const std::span<const double> measure = w.system().row_measure();
+  // D z as numbers of about the same size, from dx and dlambda.
+  const auto turned = [&](std::span<double> out) {
+    std::vector<Vec3> along(nodes), back(nodes);
+    std::vector<double> rows(row.size(), 0.0);
+    lag->add(dx, dlambda, along);
+    lag->add_transposed(1, dx, back, rows);
+    for (std::size_t i = 0; i < nodes; ++i) {
+      for (int c = 0; c < 3; ++c) out[3 * i + at(c)] = (back[i][c] - along[i][c]) / force_scale_;
+    }
+    for (std::size_t r = 0; r < rows.size(); ++r) out[3 * nodes + r] = rows[r] / measure[r];
+  };
+  std::vector<Vec3> force(nodes);
+  std::vector<double> target(row.size());
+  Result<void> solved;
+  const auto apart = [&](std::span<const double> v) {
+    for (std::size_t i = 0; i < nodes; ++i) {
+      for (int c = 0; c < 3; ++c) force[i][c] = force_scale_ * v[3 * i + at(c)];
+    }
+    for (std::size_t r = 0; r < target.size(); ++r) target[r] = measure[r] * v[3 * nodes + r];
+  };
+  const auto times = [&](std::span<const double> v, std::span<double> out) {
+    apart(v);
+    if (solved) solved = solve(force, target, nowhere);
+    turned(out);
+    for (std::size_t i = 0; i < size; ++i) out[i] += v[i];
+  };
+  std::vector<double> right(size), found(size, 0.0);
+  turned(right);
+  for (double& v : right) v = -v;
+  Gmres gmres(size, most, Gmres::Directions::made_again);
+  const int steps = gmres.solve(right, found, exact, times, [](std::span<double>) { return true; });
+  if (!solved) return solved;
+  if (steps < 0 || !(gmres.left() <= 1e-9 * gmres.start_norm()))
+    return Error{"gradients: the transposed system was not solved; ask for tangents"};
+  apart(found);
+  for (std::size_t i = 0; i < nodes; ++i) force[i] += load[i];
+  for (std::size_t r = 0; r < target.size(); ++r) target[r] += row[r];
+  return solve(force, target, nowhere);
+}
+
 namespace {
 
 bool is_cells(const Parameter& p) {
@@ -162,12 +228,6 @@ bool is_cells(const Parameter& p) {
 Result<bool> choose_adjoint(const GradientQuery& q, bool unsymmetric) {
   const bool cells = std::any_of(q.parameters.begin(), q.parameters.end(), is_cells);
   const bool wants_adjoint = q.mode == GradientQuery::Mode::adjoint;
-  if (unsymmetric && (cells || wants_adjoint)) {
-    return Error{
-        "gradients: with friction, or a pressure on faces with a free rim, the matrix is unsymmetric, and "
-        "the "
-        "adjoint is not among what gradients() knows; ask for tangents, of whole regions in place of cells"};
-  }
   if (cells && q.mode == GradientQuery::Mode::tangent)
     return Error{
         "gradients: cell_stiffness is a number a cell, and tangents would solve as often; ask by the "
@@ -185,25 +245,21 @@ Error placed(const Error& error, const char* list, std::size_t k) {
                "]: " + error.message.substr(call.size())};
 }
 
-// Effects that a query names, and gauges among its outputs.
-Result<std::vector<GaugeName>> look_up(const World& world, const GradientQuery& query) {
+// Effects that a query names.
+Result<void> check_effects(const World& world, const GradientQuery& query) {
   const auto check = [&](EffectId e, const char* list, std::size_t k) -> Result<void> {
     if (auto r = world.check(e); !r) return placed(Error{"gradients: " + r.error()}, list, k);
     return {};
   };
-  std::vector<GaugeName> gauges;
   for (std::size_t j = 0; j < query.outputs.size(); ++j) {
-    const Output& o = query.outputs[j];
-    if (o.kind != Output::Kind::gauge && o.kind != Output::Kind::reaction) continue;
-    if (auto r = check(o.effect, "outputs", j); !r) return r.failure();
-    if (o.kind == Output::Kind::gauge) gauges.push_back({static_cast<Index>(o.effect), o.quantity});
+    if (!names_effect(query.outputs[j])) continue;
+    if (auto r = check(query.outputs[j].effect, "outputs", j); !r) return r;
   }
   for (std::size_t k = 0; k < query.parameters.size(); ++k) {
-    const Parameter& p = query.parameters[k];
-    if (p.kind != Parameter::Kind::amount && p.kind != Parameter::Kind::constant) continue;
-    if (auto r = check(p.effect, "parameters", k); !r) return r.failure();
+    if (!names_effect(query.parameters[k])) continue;
+    if (auto r = check(query.parameters[k].effect, "parameters", k); !r) return r;
   }
-  return gauges;
+  return {};
 }
 
 }  // namespace
@@ -219,12 +275,20 @@ Result<Gradients> World::gradients(const GradientQuery& query) try {
         "statics() or continuation()"};
   }
   if (auto r = check_memory(w.said.builder); !r) return r.failure();
-  auto gauges = look_up(*this, query);
-  if (!gauges) return gauges.failure();
+  if (auto r = check_effects(*this, query); !r) return r.failure();
   Impl::Equilibrium eq(w);
-  eq.gauges = std::move(gauges).value();
+  for (std::size_t j = 0; j < query.outputs.size(); ++j) {
+    if (auto r = eq.watch(query.outputs[j]); !r) return placed(r.failure(), "outputs", j);
+  }
   const auto adjoint = choose_adjoint(query, w.system().has_lag());
   if (!adjoint) return adjoint.failure();
+  const auto& treated = w.system().treated();
+  if (adjoint.value() && w.system().has_lag() && !(treated.bordered.empty() && treated.dual.empty()))
+    return Error{
+        "gradients: with friction, or a pressure on faces with a free rim, the matrix is unsymmetric, and "
+        "some of "
+        "its rows are eliminated by borders or in the dual, which its adjoint does not follow; ask for "
+        "tangents"};
   if (auto r = eq.linearize(query.unstable); !r) return r.failure();
 
   Gradients out;
@@ -256,7 +320,7 @@ Result<Gradients> World::gradients(const GradientQuery& query) try {
     auto change = eq.change_by(p);
     if (!change) return placed(change.failure(), "parameters", k);
     if (!out.adjoint) {
-      Equations load(w.system(), eq.gauges.size());
+      Equations load(w.system(), eq.watched.size());
       load.add(-1, change.value());
       if (auto r = eq.solve(load.force, load.theta, eq.way_of(change.value().position)); !r)
         return r.failure();

@@ -6,6 +6,7 @@
 #include "engine/base/out_of_memory.h"
 #include "engine/base/text.h"
 #include "engine/step/time_scheme.h"
+#include "engine/world/revolve.h"
 
 namespace isochor {
 
@@ -68,6 +69,15 @@ Result<void> World::Impl::Trajectory::check() {
   return {};
 }
 
+namespace {
+
+bool is_of_positions(const Output& o) {
+  using enum Output::Kind;
+  return o.kind == positions || o.kind == distance || o.kind == square || o.kind == function;
+}
+
+}  // namespace
+
 Result<void> World::Impl::Trajectory::check_outputs() const {
   for (std::size_t j = 0; j < query_.outputs.size(); ++j) {
     const std::string who = "outputs[" + std::to_string(j) + "]";
@@ -77,17 +87,14 @@ Result<void> World::Impl::Trajectory::check_outputs() const {
         return trajectory_error(who + ": step = " + std::to_string(term.step) +
                                 "; the trajectory has steps 0 to " + std::to_string(steps()));
       }
-      const Output::Kind kind = term.output.kind;
-      if (kind == Output::Kind::reaction || kind == Output::Kind::energy)
-        return trajectory_error(who +
-                                ": reactions and energies are those of equilibria; take positions, "
-                                "distances or gauges");
-      if (kind != Output::Kind::gauge) continue;
-      if (auto r = world_.check(term.output.effect); !r) return in_list("outputs", j, r.failure());
-      if (!ends_there() || term.step == 0)
-        return trajectory_error(who +
-                                ": gauges belong to where an increment is evaluated, which the scheme does "
-                                "in its middle, or to no increment at step 0; take positions");
+      if (names_effect(term.output)) {
+        if (auto r = world_.check(term.output.effect); !r) return in_list("outputs", j, r.failure());
+      }
+      if (is_of_positions(term.output) || (ends_there() && term.step > 0)) continue;
+      return trajectory_error(
+          who +
+          ": all but functions of positions belongs to where an increment is evaluated, which "
+          "the scheme does in its middle, or to no increment at step 0; take positions");
     }
   }
   return {};
@@ -96,7 +103,7 @@ Result<void> World::Impl::Trajectory::check_outputs() const {
 Result<void> World::Impl::Trajectory::check_parameters() const {
   for (std::size_t k = 0; k < query_.parameters.size(); ++k) {
     const Parameter& p = query_.parameters[k];
-    if (p.kind == Parameter::Kind::amount || p.kind == Parameter::Kind::constant) {
+    if (names_effect(p)) {
       if (auto r = world_.check(p.effect); !r) return in_list("parameters", k, r.failure());
     }
     if (p.kind == Parameter::Kind::cells && query_.mode == GradientQuery::Mode::tangent)
@@ -131,11 +138,6 @@ Result<void> World::Impl::Trajectory::check_pools() {
 
 // --- The way -----------------------------------------------------------------------------------------------
 
-Index World::Impl::Trajectory::spacing() const {
-  if (query_.kept_states == 0) return steps();
-  return std::max<Index>(1, (steps() + query_.kept_states - 1) / query_.kept_states);
-}
-
 World::Impl::Trajectory::Moment World::Impl::Trajectory::now() const {
   Moment out{w_.state, {}};
   w_.amounts.save(out.amounts);
@@ -149,6 +151,7 @@ void World::Impl::Trajectory::restore(Moment moment) noexcept {
 }
 
 Result<void> World::Impl::Trajectory::make_step(Index n) {
+  ++steps_made_;
   const StepReport report = world_.step(query_.steps[at(n - 1)]);
   if (report.status == StepStatus::converged) return {};
   if (report.reason == out_of_memory("step")) return no_memory("trajectory_gradients");
@@ -157,46 +160,88 @@ Result<void> World::Impl::Trajectory::make_step(Index n) {
                           " s: " + report.reason + remedy);
 }
 
-Result<void> World::Impl::Trajectory::go() {
-  start_ = now();
-  const Index every = spacing();
-  part_ = {w_.state};
+// --- Forward: on the way -----------------------------------------------------------------------------------
+
+Result<void> World::Impl::Trajectory::each_forward(const OfStep& visit) {
+  before_ = now();
   for (Index n = 1; n <= steps(); ++n) {
     if (auto r = make_step(n); !r) return r;
-    if (n % every == 0 && n < steps()) {
-      kept_.push_back(now());
-      part_first_ = n;
-      part_.clear();
-    }
-    part_.push_back(w_.state);
+    after_ = now();
+    if (auto r = visit(n); !r) return r;
+    restore(*after_);
+    before_ = std::move(after_);
   }
   end_ = now();
   return {};
 }
 
-// The states from a kept one to the next.
-Result<void> World::Impl::Trajectory::remake(Index first) {
-  if (first == part_first_) return {};
-  const Index every = spacing();
-  restore(first == 0 ? *start_ : kept_[at(first / every - 1)]);
-  part_first_ = first;
-  part_ = {w_.state};
-  for (Index n = first + 1; n <= std::min(first + every, steps()); ++n) {
+// --- Backward: states that are kept ------------------------------------------------------------------------
+
+Index World::Impl::Trajectory::most_kept() const {
+  const Index all = steps() - 1;
+  return query_.kept_states == 0 ? all : std::min(query_.kept_states, all);
+}
+
+void World::Impl::Trajectory::keep(Index step) {
+  kept_.emplace_back(step, now());
+  most_at_once_ = std::max(most_at_once_, static_cast<Index>(kept_.size()));
+}
+
+// To the end, with states kept on the way as find_before() would.
+Result<void> World::Impl::Trajectory::go() {
+  Index next = 0;  // to be kept
+  const auto plan = [&](Index from) {
+    const Index free = most_kept() - static_cast<Index>(kept_.size()), left = steps() - from;
+    next = free > 0 && left > 1 ? from + steps_to_keep(left, free) : 0;
+  };
+  plan(0);
+  for (Index n = 1; n <= steps(); ++n) {
+    if (n == steps() && (kept_.empty() ? 0 : kept_.back().first) != n - 1) before_ = now();
     if (auto r = make_step(n); !r) return r;
-    part_.push_back(w_.state);
+    if (n != next) continue;
+    keep(n);
+    plan(n);
   }
+  end_ = now();
   return {};
 }
 
-Result<void> World::Impl::Trajectory::each(Way way, const std::function<Result<void>(Index)>& visit) {
-  const Index every = spacing(), parts = (steps() + every - 1) / every;
-  for (Index k = 0; k < parts; ++k) {
-    const Index first = every * (way == Way::backward ? parts - 1 - k : k);
-    if (auto r = remake(first); !r) return r;
-    const Index count = std::min(every, steps() - first);
-    for (Index i = 0; i < count; ++i) {
-      if (auto r = visit(first + 1 + (way == Way::backward ? count - 1 - i : i)); !r) return r;
+// The state that a step begins with, into before_: kept, or made again from the last one that is.
+Result<void> World::Impl::Trajectory::find_before(Index step) {
+  Index from = kept_.empty() ? 0 : kept_.back().first;
+  if (from < step) restore(kept_.empty() ? *start_ : kept_.back().second);
+  while (from < step) {
+    const Index free = most_kept() - static_cast<Index>(kept_.size());
+    const Index to = free > 0 ? from + steps_to_keep(step + 1 - from, free) : step;
+    for (Index n = from + 1; n <= to; ++n) {
+      if (auto r = make_step(n); !r) return r;
     }
+    if (free == 0) {
+      before_ = now();
+      return {};
+    }
+    keep(to);
+    from = to;
+  }
+  if (step == 0) {
+    before_ = *start_;
+    return {};
+  }
+  before_ = std::move(kept_.back().second);
+  kept_.pop_back();
+  return {};
+}
+
+Result<void> World::Impl::Trajectory::each_backward(const OfStep& visit) {
+  if (auto r = go(); !r) return r;
+  after_ = *end_;
+  for (Index n = steps(); n >= 1; --n) {
+    if (!before_) {
+      if (auto r = find_before(n - 1); !r) return r;
+    }
+    if (auto r = visit(n); !r) return r;
+    after_ = std::move(before_);
+    before_.reset();
   }
   return {};
 }
@@ -214,7 +259,7 @@ void World::Impl::Trajectory::stand_at(const State& state, const State& memory_o
 
 // Where increment n was evaluated.
 World::Impl::Trajectory::Increment World::Impl::Trajectory::stand_in(Index n) {
-  const State &before = part_[at(n - 1 - part_first_)], &after = part_[at(n - part_first_)];
+  const State &before = before_->state, &after = after_->state;
   const TimeScheme& scheme = *w_.options.scheme;
   const double h = query_.steps[at(n - 1)], part = scheme.evaluated_at();
   State past = before;
@@ -248,8 +293,7 @@ Result<Gradients> World::trajectory_gradients(const TrajectoryQuery& query) {
     if (auto r = impl_->compile(); !r) return r.failure();
     way.emplace(*this, query);
     if (auto r = way->check(); !r) return r.failure();
-    auto gone = way->go();
-    auto out = gone ? way->gradients() : Result<Gradients>(gone.failure());
+    auto out = way->gradients();
     way->leave(out.ok());
     return out;
   } catch (const std::bad_alloc&) {

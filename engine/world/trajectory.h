@@ -13,9 +13,12 @@
 // Damping depends on where the increment began as well; its potential is the same when both ends change
 // places, so that what it adds to either way follows from its forces (DissipativeStencils).
 //
+// Outputs of an increment itself (reactions, gauges, stresses, ...) are looked at where it was evaluated. A
+// reaction is a force of R, which depends on y as R does.
+//
 // Each increment is linearized where it was solved, by its own matrix, as World::gradients() does (the
-// outline stands there). States of the way are kept, or made again from those that are
-// (TrajectoryQuery::kept_states).
+// outline stands there). Forward that is done on the way. Backward, states of the way are kept, or made again
+// from those that are (revolve.h).
 #pragma once
 
 #include <functional>
@@ -35,7 +38,6 @@ class World::Impl::Trajectory {
   Trajectory(World& world, const TrajectoryQuery& query) : world_(world), w_(*world.impl_), query_(query) {}
 
   Result<void> check();
-  Result<void> go();
   Result<Gradients> gradients();
   // To the end of the way, or back to where it began. Takes no memory.
   void leave(bool at_end) noexcept;
@@ -62,6 +64,7 @@ class World::Impl::Trajectory {
   Index steps() const { return static_cast<Index>(query_.steps.size()); }
   bool dissipates() const { return !w_.system().facets().dissipative.empty(); }
   bool ends_there() const { return w_.options.scheme->evaluated_at() == 1; }
+  bool by_adjoint() const;
   Result<void> check_parameters() const;
   Result<void> check_outputs() const;
   Result<void> check_pools();
@@ -74,16 +77,18 @@ class World::Impl::Trajectory {
   Moment now() const;
   void restore(Moment moment) noexcept;
   Result<void> make_step(Index n);
-  Result<void> remake(Index first);
   void stand_at(const State& state, const State& memory_of);
   Increment stand_in(Index n);
-  Result<std::vector<OutputSeed>> seeds_at(Equilibrium& eq, Index n, Gradients& out);
-  std::vector<GaugeName> gauges_of(Index n) const;
+  Result<void> watch(Equilibrium& eq, Index n) const;
+  Result<std::vector<OutputSeed>> seeds_of(Equilibrium& eq, Index n, Gradients& out) const;
   // Linearizes increment n and hands it on.
   template <class Visit>
   Result<void> in_increment(Index n, Gradients& out, Visit&& visit);
-  Result<void> by_adjoint(Gradients& out);
-  Result<void> by_tangent(Gradients& out);
+  Result<void> go_back(Gradients& out);
+  Result<void> go_along(Gradients& out);
+  void add_start(std::span<const OutputSeed> seeds, std::vector<Lists3>& felt, Gradients& out) const;
+  Result<void> step_back(const Linearized& here, std::vector<Lists3>& felt, Gradients& out) const;
+  Result<void> step_along(const Linearized& here, std::vector<Lists3>& moved, Gradients& out) const;
   // What an increment adds to the gradients by the adjoint of output j.
   Result<void> gather(const Linearized& here, std::size_t j, const Adjoint& adjoint, Gradients& out) const;
   Result<std::vector<Equations>> changes(Equilibrium& eq) const;
@@ -91,18 +96,22 @@ class World::Impl::Trajectory {
   std::vector<Vec3> heavy(double factor, std::span<const Vec3> v) const;
   // Rows that are about to touch or to let go, where an increment was evaluated.
   void look_for_edges(Index n, Gradients& out) const;
-  // Visits increments from the last to the first, or the other way.
-  enum class Way : std::uint8_t { forward, backward };
-  Result<void> each(Way way, const std::function<Result<void>(Index)>& visit);
-  Index spacing() const;
+  // Visits increments: on the way, or when it is gone from the last to the first.
+  using OfStep = std::function<Result<void>(Index)>;
+  Result<void> each_forward(const OfStep& visit);
+  Result<void> each_backward(const OfStep& visit);
+  Index most_kept() const;
+  Result<void> go();
+  void keep(Index step);
+  Result<void> find_before(Index step);
 
   World& world_;
   Impl& w_;
   const TrajectoryQuery& query_;
   std::optional<Moment> start_, end_;
-  std::vector<Moment> kept_;  // at every spacing() steps, but the first
-  std::vector<State> part_;   // states from part_first_ on
-  Index part_first_ = 0;
+  std::optional<Moment> before_, after_;        // where the increment at hand begins and ends
+  std::vector<std::pair<Index, Moment>> kept_;  // by step, ascending; beside start_
+  Index most_at_once_ = 0, steps_made_ = 0;
   std::size_t lists_ = 2;
 };
 

@@ -20,39 +20,29 @@ void add_to(std::vector<Vec3>& sum, double factor, std::span<const Vec3> other) 
 
 // --- Outputs and parameters --------------------------------------------------------------------------------
 
-std::vector<GaugeName> World::Impl::Trajectory::gauges_of(Index n) const {
-  std::vector<GaugeName> out;
-  for (const TimedOutput& o : query_.outputs) {
-    for (const TimedOutput::Term& term : o.terms) {
-      if (term.step == n && term.output.kind == Output::Kind::gauge)
-        out.push_back({static_cast<Index>(term.output.effect), term.output.quantity});
-    }
-  }
-  return out;
-}
-
-// What each output has at the end of a step, zero where it has nothing. Leaves the world at that end.
-Result<std::vector<OutputSeed>> World::Impl::Trajectory::seeds_at(Equilibrium& eq, Index n, Gradients& out) {
-  const State& end = part_[at(n - part_first_)];
-  std::vector<OutputSeed> seeds(query_.outputs.size());
-  for (std::size_t j = 0; j < seeds.size(); ++j) {
-    OutputSeed& sum = seeds[j];
-    sum.x.resize(end.x.size());
-    sum.through.resize(end.x.size());
-    sum.multiplier.resize(end.lambda.size());
+Result<void> World::Impl::Trajectory::watch(Equilibrium& eq, Index n) const {
+  for (std::size_t j = 0; j < query_.outputs.size(); ++j) {
     for (const TimedOutput::Term& term : query_.outputs[j].terms) {
       if (term.step != n) continue;
-      stand_at(end, end);
+      if (auto r = eq.watch(term.output); !r) return in_list("outputs", j, r.failure());
+    }
+  }
+  return {};
+}
+
+// What each output has of the state that the world is at, zero where it has nothing.
+Result<std::vector<OutputSeed>> World::Impl::Trajectory::seeds_of(Equilibrium& eq, Index n,
+                                                                  Gradients& out) const {
+  std::vector<OutputSeed> seeds;
+  for (std::size_t j = 0; j < query_.outputs.size(); ++j) {
+    OutputSeed& sum = seeds.emplace_back(w_.state.x.size(), w_.state.lambda.size());
+    for (const TimedOutput::Term& term : query_.outputs[j].terms) {
+      if (term.step != n) continue;
       auto seed = eq.seed_of(term.output);
       if (!seed) return in_list("outputs", j, seed.failure());
-      out.values[j] += seed.value().value;
-      add_to(sum.x, 1, seed.value().x);
-      for (std::size_t r = 0; r < sum.multiplier.size(); ++r) sum.multiplier[r] += seed.value().multiplier[r];
-      if (seed.value().gauge >= 0 && sum.gauge >= 0)
-        return trajectory_error("outputs[" + std::to_string(j) +
-                                "]: two gauges at one step; make them outputs of their own and add them up");
-      sum.gauge = std::max(sum.gauge, seed.value().gauge);
+      sum.add(seed.value());
     }
+    out.values[j] += sum.value;
   }
   return seeds;
 }
@@ -194,12 +184,19 @@ std::vector<Vec3> World::Impl::Trajectory::dissipation_back(const Increment& inc
 template <class Visit>
 Result<void> World::Impl::Trajectory::in_increment(Index n, Gradients& out, Visit&& visit) {
   Equilibrium eq(w_);
-  eq.gauges = gauges_of(n);
-  auto seeds = seeds_at(eq, n, out);
-  if (!seeds) return seeds.failure();
+  if (auto r = watch(eq, n); !r) return r;
+  Result<std::vector<OutputSeed>> seeds(std::vector<OutputSeed>{});
+  // Functions of positions alone, of those at its end.
+  if (!ends_there()) {
+    stand_at(after_->state, after_->state);
+    seeds = seeds_of(eq, n, out);
+    if (!seeds) return seeds.failure();
+  }
   const Increment increment = stand_in(n);
   eq.inertia = &increment.inertia;
   if (auto r = eq.linearize(true); !r) return in_step(n, r.failure());
+  if (ends_there()) seeds = seeds_of(eq, n, out);
+  if (!seeds) return seeds.failure();
   const auto change = changes(eq);
   if (!change) return change.failure();
   if (auto r = visit(Linearized{n, increment, eq, seeds.value(), change.value()}); !r) return r;
@@ -207,38 +204,36 @@ Result<void> World::Impl::Trajectory::in_increment(Index n, Gradients& out, Visi
   return {};
 }
 
-Result<void> World::Impl::Trajectory::by_adjoint(Gradients& out) {
-  const std::size_t nodes = w_.state.x.size(), outputs = query_.outputs.size();
-  std::vector<Lists3> felt(outputs, zeros(lists_, nodes));  // dJ/dy behind the increment at hand
-  const auto go_back = [&](const Linearized& here) -> Result<void> {
-    const StepMap& map = here.increment.map;
-    for (std::size_t j = 0; j < outputs; ++j) {
-      OutputSeed& seed = here.seeds[j];
-      add_to(felt[j][0], 1, seed.x);
-      std::fill(seed.x.begin(), seed.x.end(), Vec3{});
-      for (std::size_t k = 0; k < lists_; ++k) add_to(seed.x, map.found[k], felt[j][k]);
-      const auto adjoint = here.eq.adjoint_of(seed);
-      if (!adjoint) return in_step(here.step, adjoint.failure());
-      const std::vector<Vec3>& a = adjoint.value().force;
-      if (auto r = gather(here, j, adjoint.value(), out); !r) return r;
-      const auto pull = heavy(map.mass_scale, a);
-      Lists3 before = zeros(lists_, nodes);
-      for (std::size_t b = 0; b < lists_; ++b) {
-        for (std::size_t k = 0; k < lists_; ++k) add_to(before[b], map.before[k][b], felt[j][k]);
-        add_to(before[b], map.predicted[b], pull);
-      }
-      if (dissipates()) add_to(before[0], -1, dissipation_back(here.increment, a));
-      felt[j] = std::move(before);
+Result<void> World::Impl::Trajectory::step_back(const Linearized& here, std::vector<Lists3>& felt,
+                                                Gradients& out) const {
+  const StepMap& map = here.increment.map;
+  for (std::size_t j = 0; j < felt.size(); ++j) {
+    OutputSeed& seed = here.seeds[j];
+    add_to(felt[j][0], 1, seed.x);
+    add_to(felt[j][1], 1, seed.v);
+    std::fill(seed.x.begin(), seed.x.end(), Vec3{});
+    for (std::size_t k = 0; k < lists_; ++k) add_to(seed.x, map.found[k], felt[j][k]);
+    const auto adjoint = here.eq.adjoint_of(seed);
+    if (!adjoint) return in_step(here.step, adjoint.failure());
+    const std::vector<Vec3>& a = adjoint.value().force;
+    if (auto r = gather(here, j, adjoint.value(), out); !r) return r;
+    const auto pull = heavy(map.mass_scale, a);
+    Lists3 before = zeros(lists_, w_.state.x.size());
+    for (std::size_t b = 0; b < lists_; ++b) {
+      for (std::size_t k = 0; k < lists_; ++k) add_to(before[b], map.before[k][b], felt[j][k]);
+      add_to(before[b], map.predicted[b], pull);
     }
-    return {};
-  };
-  auto done = each(Way::backward, [&](Index n) { return in_increment(n, out, go_back); });
-  if (!done) return done;
-  Equilibrium eq(w_);
-  auto seeds = seeds_at(eq, 0, out);
-  if (!seeds) return seeds.failure();
-  for (std::size_t j = 0; j < outputs; ++j) {
-    add_to(felt[j][0], 1, seeds.value()[j].x);
+    if (dissipates()) add_to(before[0], -1, dissipation_back(here.increment, a));
+    felt[j] = std::move(before);
+  }
+  return {};
+}
+
+// What the start itself has to do with outputs.
+void World::Impl::Trajectory::add_start(std::span<const OutputSeed> seeds, std::vector<Lists3>& felt,
+                                        Gradients& out) const {
+  for (std::size_t j = 0; j < felt.size(); ++j) {
+    add_to(felt[j][0], 1, seeds[j].x);
     for (std::size_t k = 0; k < query_.parameters.size(); ++k) {
       const Parameter& p = query_.parameters[k];
       if (p.kind != Parameter::Kind::shape && p.kind != Parameter::Kind::velocity) continue;
@@ -247,6 +242,18 @@ Result<void> World::Impl::Trajectory::by_adjoint(Gradients& out) {
       for (std::size_t i = 0; i < motion.size(); ++i) out.by[j][k][0] += dot(list[i], motion[i]);
     }
   }
+}
+
+Result<void> World::Impl::Trajectory::go_back(Gradients& out) {
+  // dJ/dy behind the increment at hand.
+  std::vector<Lists3> felt(query_.outputs.size(), zeros(lists_, w_.state.x.size()));
+  const auto visit = [&](const Linearized& here) { return step_back(here, felt, out); };
+  if (auto r = each_backward([&](Index n) { return in_increment(n, out, visit); }); !r) return r;
+  Equilibrium eq(w_);
+  stand_at(start_->state, start_->state);
+  auto seeds = seeds_of(eq, 0, out);
+  if (!seeds) return seeds.failure();
+  add_start(seeds.value(), felt, out);
   return {};
 }
 
@@ -260,70 +267,82 @@ double along(const OutputSeed& seed, std::span<const Vec3> x, std::span<const do
   return sum;
 }
 
+double product(std::span<const Vec3> a, std::span<const Vec3> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += dot(a[i], b[i]);
+  return sum;
+}
+
 }  // namespace
 
-Result<void> World::Impl::Trajectory::by_tangent(Gradients& out) {
-  const std::size_t nodes = w_.state.x.size(), parameters = query_.parameters.size();
-  std::vector<Lists3> moved(parameters, zeros(lists_, nodes));  // dy/dp before the increment at hand
+Result<void> World::Impl::Trajectory::step_along(const Linearized& here, std::vector<Lists3>& moved,
+                                                 Gradients& out) const {
+  const StepMap& map = here.increment.map;
+  const std::size_t nodes = w_.state.x.size();
+  for (std::size_t k = 0; k < moved.size(); ++k) {
+    const Equations& change = here.change[k];
+    std::vector<Vec3> carried(nodes);
+    for (std::size_t b = 0; b < lists_; ++b) add_to(carried, map.predicted[b], moved[k][b]);
+    std::vector<Vec3> load = heavy(map.mass_scale, carried);
+    std::vector<double> row(change.theta);
+    for (double& r : row) r = -r;
+    add_to(load, -1, change.force);
+    if (dissipates()) add_to(load, -1, dissipation_along(here.increment, moved[k][0]));
+    if (auto r = here.eq.solve(load, row, here.eq.way_of(change.position)); !r)
+      return in_step(here.step, r.failure());
+    Lists3 after = zeros(lists_, nodes);
+    for (std::size_t a = 0; a < lists_; ++a) {
+      for (std::size_t b = 0; b < lists_; ++b) add_to(after[a], map.before[a][b], moved[k][b]);
+      add_to(after[a], map.found[a], here.eq.dx);
+    }
+    moved[k] = std::move(after);
+    for (std::size_t j = 0; j < out.by.size(); ++j) {
+      const OutputSeed& seed = here.seeds[j];
+      out.by[j][k][0] += Equilibrium::held(seed, change) + along(seed, moved[k][0], here.eq.dlambda) +
+                         product(seed.v, moved[k][1]) - product(seed.through, load);
+    }
+  }
+  return {};
+}
+
+Result<void> World::Impl::Trajectory::go_along(Gradients& out) {
+  const std::size_t parameters = query_.parameters.size();
+  std::vector<Lists3> moved(parameters, zeros(lists_, w_.state.x.size()));  // dy/dp before the increment
   for (std::size_t k = 0; k < parameters; ++k) {
     const bool velocity = query_.parameters[k].kind == Parameter::Kind::velocity;
     moved[k][velocity ? 1 : 0] = in_scene(query_.parameters[k]);
     for (auto& by : out.by) by[k].assign(1, 0.0);
   }
-  const auto go_on = [&](const Linearized& here) -> Result<void> {
-    const StepMap& map = here.increment.map;
-    for (std::size_t k = 0; k < parameters; ++k) {
-      const Equations& change = here.change[k];
-      std::vector<Vec3> carried(nodes);
-      for (std::size_t b = 0; b < lists_; ++b) add_to(carried, map.predicted[b], moved[k][b]);
-      std::vector<Vec3> load = heavy(map.mass_scale, carried);
-      std::vector<double> row(change.theta);
-      for (double& r : row) r = -r;
-      add_to(load, -1, change.force);
-      if (dissipates()) add_to(load, -1, dissipation_along(here.increment, moved[k][0]));
-      if (auto r = here.eq.solve(load, row, here.eq.way_of(change.position)); !r)
-        return in_step(here.step, r.failure());
-      Lists3 after = zeros(lists_, nodes);
-      for (std::size_t a = 0; a < lists_; ++a) {
-        for (std::size_t b = 0; b < lists_; ++b) add_to(after[a], map.before[a][b], moved[k][b]);
-        add_to(after[a], map.found[a], here.eq.dx);
-      }
-      moved[k] = std::move(after);
-      for (std::size_t j = 0; j < out.by.size(); ++j) {
-        out.by[j][k][0] +=
-            Equilibrium::held(here.seeds[j], change) + along(here.seeds[j], moved[k][0], here.eq.dlambda);
-      }
-    }
-    return {};
-  };
-  const auto begin = [&]() -> Result<void> {
-    Equilibrium eq(w_);
-    auto seeds = seeds_at(eq, 0, out);
-    if (!seeds) return seeds.failure();
-    for (std::size_t k = 0; k < parameters; ++k) {
-      for (std::size_t j = 0; j < out.by.size(); ++j)
-        out.by[j][k][0] += along(seeds.value()[j], moved[k][0], {});
-    }
-    return {};
-  };
-  return each(Way::forward, [&](Index n) -> Result<void> {
-    if (n == 1) {
-      if (auto r = begin(); !r) return r;
-    }
-    return in_increment(n, out, go_on);
-  });
+  Equilibrium eq(w_);
+  auto seeds = seeds_of(eq, 0, out);
+  if (!seeds) return seeds.failure();
+  for (std::size_t k = 0; k < parameters; ++k) {
+    for (std::size_t j = 0; j < out.by.size(); ++j)
+      out.by[j][k][0] += along(seeds.value()[j], moved[k][0], {});
+  }
+  const auto visit = [&](const Linearized& here) { return step_along(here, moved, out); };
+  return each_forward([&](Index n) { return in_increment(n, out, visit); });
+}
+
+bool World::Impl::Trajectory::by_adjoint() const {
+  const bool cells = std::any_of(query_.parameters.begin(), query_.parameters.end(),
+                                 [](const Parameter& p) { return p.kind == Parameter::Kind::cells; });
+  return query_.mode == GradientQuery::Mode::adjoint || cells ||
+         (query_.mode == GradientQuery::Mode::automatic && query_.outputs.size() <= query_.parameters.size());
 }
 
 Result<Gradients> World::Impl::Trajectory::gradients() {
+  start_ = now();
   Gradients out;
-  const bool cells = std::any_of(query_.parameters.begin(), query_.parameters.end(),
-                                 [](const Parameter& p) { return p.kind == Parameter::Kind::cells; });
-  out.adjoint =
-      query_.mode == GradientQuery::Mode::adjoint || cells ||
-      (query_.mode == GradientQuery::Mode::automatic && query_.outputs.size() <= query_.parameters.size());
+  out.adjoint = by_adjoint();
   out.values.assign(query_.outputs.size(), 0.0);
   out.by.assign(query_.outputs.size(), std::vector<std::vector<double>>(query_.parameters.size()));
-  if (auto r = out.adjoint ? by_adjoint(out) : by_tangent(out); !r) return r.failure();
+  if (auto r = out.adjoint ? go_back(out) : go_along(out); !r) return r.failure();
+  out.kept_states = most_at_once_;
+  out.steps_again = steps_made_ - steps();
+  const State& s = start_->state;
+  out.state_bytes = sizeof(Vec3) * (s.x.size() + s.v.size() + s.forces.size() + s.reactions.size()) +
+                    sizeof(double) * (s.lambda.size() + s.extra.size() + start_->amounts.size());
   return out;
 }
 

@@ -16,8 +16,8 @@ struct ScenePart {
 };
 
 struct Equations;
-struct GaugeName;
 struct Inertia;
+struct Watched;
 
 // Positions and velocities that a world has no more use for and that a host still looks at.
 struct LeftViews {
@@ -94,7 +94,6 @@ struct World::Impl {
   // phi - target - C lambda of all compliant rows at the state.
   std::vector<double> row_residuals();
   std::vector<Vec3> momenta();  // mass times velocity of every node [kg m/s]
-  double law_energy();          // [J]
   // As World::reaction(), at another state, whose reactions are residual forces.
   std::array<Vec3, 2> reaction_of(Index effect, const State& at_state) const;
   // Why derivatives at the state are those of one side; `effects`: whose rows are about to touch or to let
@@ -122,7 +121,7 @@ struct World::Impl {
   Result<void> compile_like(Impl& other);              // renewal.cpp
   Result<BuiltParts> build_beside(Description& next);  // renewal.cpp
   // The equations of a changed scene at the present state; one with other nodes, rows or memory is refused.
-  Result<Equations> equations_beside(Description next, std::span<const GaugeName> gauges_wanted,
+  Result<Equations> equations_beside(Description next, std::span<const Watched> watched,
                                      const Inertia* inertia = nullptr);
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/world/equations.h"
 #include "engine/world/recovery.h"
 #include "engine/world/world_impl.h"
 
@@ -74,57 +75,16 @@ double World::kinetic_energy() const {
   return energy;
 }
 
-namespace {
-
-double work_on(std::span<const Vec3> force, std::span<const Vec3> x, std::span<const Vec3> rest) {
-  double sum = 0;
-  for (std::size_t i = 0; i < force.size(); ++i) sum += dot(force[i], x[i] - rest[i]);
-  return sum;
-}
-
-}  // namespace
-
-// Energy of the rows with a law of their own, the gas in chambers: multiplier times strain less the law's
-// potential. The strain is that of the positions: the multipliers of some schemes belong to other times, and
-// an error of theirs counts by its square then. At the state, evaluated.
-double World::Impl::law_energy() {
-  if (system().laws().empty()) return 0;
-  std::vector<double> phi(at(system().rows()));
-  assembly().row_values(phi);
-  double energy = 0;
-  for (const auto& law : system().laws()) {
-    const auto first = at(system().first_row(law.row_pool));
-    const auto rows = at(system().parts().row_pools[at(law.row_pool)]->rows());
-    std::vector<double> strain(rows);
-    energy -= system().evaluate_law(law, state.t, state.t, state.extra, state.lambda, strain, {});
-    for (std::size_t r = first; r < first + rows; ++r)
-      energy += state.lambda[r] * (phi[r] - data->target()[r]);
-  }
-  return energy;
-}
-
 Energies World::energies() const {
   Energies e;
   Impl& w = *impl_;
   if (!w.ready()) return e;
   const SystemParts& parts = w.system().parts();
-  if (w.system().prescribed_rows() > 0) {
-    std::vector<double> phi(w.data->prescribed().size()), rest_phi(phi.size());
-    Assembly& assembly = w.assembly();
-    w.data->evaluate(w.system(), w.state.t);
-    assembly.evaluate(Want::value, Definiteness::exact, parts.rest, w.state.lambda, w.data->prescribed());
-    assembly.prescribed_row_values(rest_phi);
-    w.evaluate_state(Want::value);
-    assembly.prescribed_row_values(phi);
-    for (std::size_t r = 0; r < phi.size(); ++r)
-      e.pressures += w.data->prescribed()[r] * (phi[r] - rest_phi[r]);
-  }
-  e.elastic = elastic_energy();  // evaluates the state
-  e.pressures += w.law_energy();
+  w.evaluate_state(Want::gradient);
+  e.pressures = pressure_energy({w.system(), w.assembly(), *w.data, w.instances, w.said.builder}, w.state);
+  e.elastic = elastic_energy();
   e.kinetic = kinetic_energy();
-  std::vector<Vec3> force(w.state.x.size());
-  for (const auto& load : parts.loads) load->add(w.state.t, force);
-  for (std::size_t i = 0; i < w.state.forces.size(); ++i) force[i] += w.state.forces[i];
+  std::vector<Vec3> force = load_forces(parts, w.state);
   e.loads = 0 - work_on(force, w.state.x, parts.rest);
   const Vec3 g = w.data->gravity(w.state.t);
   for (std::size_t i = 0; i < force.size(); ++i) force[i] = w.data->weight()[i] * g;

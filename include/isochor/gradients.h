@@ -3,9 +3,11 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "isochor/curves.h"
 #include "isochor/effects/effect.h"
 #include "isochor/export.h"
 #include "isochor/ids.h"
@@ -16,7 +18,17 @@ namespace isochor {
 
 // A number J that an equilibrium shows.
 struct ISOCHOR_API Output {
-  enum class Kind : std::uint8_t { positions, distance, gauge, reaction, energy };
+  enum class Kind : std::uint8_t {
+    positions,
+    distance,
+    gauge,
+    reaction,
+    energy,
+    square,
+    stress,
+    force,
+    function
+  };
   Kind kind = Kind::positions;
   BodyId body{};
   EffectId effect{};
@@ -24,8 +36,13 @@ struct ISOCHOR_API Output {
   std::vector<Vec3> vectors;  // weights or targets, one a node
   Vec3 point{};               // at rest [m], in place of nodes
   bool at_point = false;
-  std::string quantity;  // of the gauge
+  std::string quantity;  // of a gauge; of energies and stresses which
   Vec3 force{}, moment{};
+  double target = 0;  // of a square
+  Index cell = -1;    // of World::mesh(body)
+  // Of the positions of a body: the number, and into `gradient` how it changes with each of them.
+  using Function = std::function<Result<double>(std::span<const Vec3> x, std::span<Vec3> gradient)>;
+  Function function;
 
   // Sum of weight . x over nodes: every linear function of positions.
   static Output positions(BodyId body, std::vector<Index> nodes, std::vector<Vec3> weights);
@@ -40,6 +57,19 @@ struct ISOCHOR_API Output {
   static Output reaction(EffectId effect, const Vec3& force, const Vec3& moment = {});
   // World::elastic_energy().
   static Output elastic_energy();
+  // One of World::energies(): "elastic", "gravity", "loads", "pressures", "potential", and of trajectories
+  // "kinetic" and "total".
+  static Output energy(std::string part);
+  // Half the square of (sum of weight . x over nodes - target): quadratic functions are sums of these.
+  static Output square(BodyId body, std::vector<Index> nodes, std::vector<Vec3> weights, double target);
+  // Cauchy stress in a cell as World::fields() has it [Pa]: "von_mises", "pressure" (a third of the trace,
+  // tension positive), or a component, "xx", "yy", "zz", "xy", "yz", "zx".
+  static Output stress(BodyId body, Index cell, std::string measure);
+  // direction . F, F being all that an effect does to the nodes of a body [N]: a contact (the grip of a
+  // gripper, friction included), a cable, a cavity, springs. For supports there are reactions.
+  static Output effect_force(EffectId effect, BodyId body, const Vec3& direction);
+  // A number that a host makes of the positions of a body, with its gradient.
+  static Output of_positions(BodyId body, Function function);
 };
 
 // A number p of the scene, or a list of them.
@@ -54,7 +84,8 @@ struct ISOCHOR_API Parameter {
     cells,
     constant,
     shape,
-    velocity
+    velocity,
+    curve
   };
   Kind kind = Kind::amount;
   EffectId effect{};
@@ -65,11 +96,15 @@ struct ISOCHOR_API Parameter {
   double step = 0;
   Vec3 point{}, vector{};
   std::vector<Vec3> motion;  // one a node
+  Curve curve;
+  Index number = -1;  // of a point of the curve
   std::function<Result<MaterialPtr>(double)> law;
   std::function<Result<EffectPtr>(double)> definition;
 
   // The amount of an effect, in its unit.
   static Parameter amount_of(EffectId effect);
+  // The value of one point, from 0, of the curve that the amount of an effect follows, in its unit.
+  static Parameter curve_point(EffectId effect, Curve curve, Index number);
   // A dead force on a point of a body, times a factor: `force` is the unit [N].
   static Parameter force_at(BodyId body, const Vec3& point, const Vec3& force);
   // Gravity along a direction [m/s^2]; the length of `direction` is the unit.
@@ -113,6 +148,10 @@ struct Gradients {
   std::string note;
   std::vector<std::string> undecided;
   bool adjoint = false;  // how it was found
+  // Of trajectories: how many states of the way were kept at most at a time, what one takes [bytes], and how
+  // many steps were made again.
+  Index kept_states = 0, steps_again = 0;
+  std::size_t state_bytes = 0;
 
   double of(std::size_t output, std::size_t parameter) const { return by[output][parameter].front(); }
 };
@@ -121,7 +160,7 @@ struct Gradients {
 struct TimedOutput {
   struct Term {
     Index step = 0;  // from 1; 0: where the trajectory begins
-    Output output;   // positions, material points, distances, gauges
+    Output output;
   };
   std::vector<Term> terms;
 };
@@ -131,8 +170,9 @@ struct TrajectoryQuery {
   std::vector<TimedOutput> outputs;
   std::vector<Parameter> parameters;
   GradientQuery::Mode mode = GradientQuery::Mode::automatic;
-  // How many states of the way are kept; from the last one before it a part of the way is made again when its
-  // turn comes. 0: all, and nothing is made twice. About the root of the number of steps takes least memory.
+  // Of the adjoint: how many states of the way may be kept at a time, beside its two ends and those of the
+  // step at hand. Others are made again from them when their turn comes, by as few steps as that takes. 0:
+  // all are kept and none is made again. Tangents go along with the way and keep none.
   Index kept_states = 0;
 };
 

@@ -444,8 +444,16 @@ enum {
   ISO_OUTPUT_MATERIAL_POINT = 2, /* direction . x of the point of the body that is at `point` at rest */
   ISO_OUTPUT_GAUGE = 3,          /* `quantity` of `effect`, as iso_gauge_value() */
   ISO_OUTPUT_REACTION = 4,       /* force . F + moment . M of the reaction (F, M) of `effect` */
-  ISO_OUTPUT_ELASTIC_ENERGY = 5  /* of the world [J] */
+  ISO_OUTPUT_ELASTIC_ENERGY = 5, /* of the world [J] */
+  ISO_OUTPUT_ENERGY = 6, /* `quantity` of iso_energies(): "elastic", "gravity", ...; "kinetic" of ways */
+  ISO_OUTPUT_SQUARE = 7, /* half the square of (the sum of vector . x over `nodes`, less `target`) */
+  ISO_OUTPUT_STRESS = 8, /* `quantity` in `cell` of iso_body_mesh(): "von_mises", "pressure", "xx" ... [Pa] */
+  ISO_OUTPUT_EFFECT_FORCE = 9, /* direction . F, what `effect` does to the nodes of `body` in all [N] */
+  ISO_OUTPUT_OF_POSITIONS = 10 /* what `function` makes of the positions of `body` */
 };
+/* Of `count` positions: the number, and into `gradient` how it changes with each of them, both of 3 doubles a
+ * node. What is not finite is refused. */
+typedef double (*iso_positions_fn)(void* user, const double* positions, double* gradient, size_t count);
 typedef struct iso_output {
   size_t size;
   int32_t kind; /* ISO_OUTPUT_... */
@@ -457,6 +465,10 @@ typedef struct iso_output {
   iso_effect effect;
   const char* quantity;
   double force[3], moment[3];
+  double target;
+  int32_t cell;
+  iso_positions_fn function;
+  void* user;
 } iso_output;
 
 /* The keys of a material or an effect where a number has this value, one object of JSON; null: there is no
@@ -465,16 +477,17 @@ typedef const char* (*iso_keys_fn)(void* user, double value);
 
 /* A number of the scene, or a list of them. */
 enum {
-  ISO_PARAMETER_AMOUNT_OF = 0,       /* of `effect`, in its unit */
-  ISO_PARAMETER_FORCE_AT = 1,        /* a factor on a dead force `vector` [N] at `point` of `body` */
-  ISO_PARAMETER_GRAVITY = 2,         /* along `vector`, whose length is the unit [m/s^2] */
-  ISO_PARAMETER_DENSITY = 3,         /* of `region` of `body` [kg/m^3] */
-  ISO_PARAMETER_MATERIAL = 4,        /* a number among the keys of the material of `region` of `body` */
-  ISO_PARAMETER_STIFFNESS = 5,       /* a factor on the stiffness of `region` of `body`, at 1 */
-  ISO_PARAMETER_CELL_STIFFNESS = 6,  /* the same of each cell of `body`: as many numbers; not by tangents */
-  ISO_PARAMETER_CONSTANT_OF = 7,     /* a number among the keys of `effect`, whose kind is `effect_kind` */
-  ISO_PARAMETER_SHAPE = 8,           /* rest positions of `body` move by this times `motion` */
-  ISO_PARAMETER_INITIAL_VELOCITY = 9 /* of trajectories: those at the start change by this times `motion` */
+  ISO_PARAMETER_AMOUNT_OF = 0,        /* of `effect`, in its unit */
+  ISO_PARAMETER_FORCE_AT = 1,         /* a factor on a dead force `vector` [N] at `point` of `body` */
+  ISO_PARAMETER_GRAVITY = 2,          /* along `vector`, whose length is the unit [m/s^2] */
+  ISO_PARAMETER_DENSITY = 3,          /* of `region` of `body` [kg/m^3] */
+  ISO_PARAMETER_MATERIAL = 4,         /* a number among the keys of the material of `region` of `body` */
+  ISO_PARAMETER_STIFFNESS = 5,        /* a factor on the stiffness of `region` of `body`, at 1 */
+  ISO_PARAMETER_CELL_STIFFNESS = 6,   /* the same of each cell of `body`: as many numbers; not by tangents */
+  ISO_PARAMETER_CONSTANT_OF = 7,      /* a number among the keys of `effect`, whose kind is `effect_kind` */
+  ISO_PARAMETER_SHAPE = 8,            /* rest positions of `body` move by this times `motion` */
+  ISO_PARAMETER_INITIAL_VELOCITY = 9, /* of trajectories: those at the start change by this times `motion` */
+  ISO_PARAMETER_CURVE_POINT = 10      /* the value of point `number` of the curve of the amount of `effect` */
 };
 typedef struct iso_parameter {
   size_t size;
@@ -493,6 +506,10 @@ typedef struct iso_parameter {
   void* user;
   double value;
   double step; /* how far it is moved where a difference is taken; 0: 1e-4 of its value */
+  /* The curve that the amount follows, `curve_count` pairs of time and value; points by number from 0. */
+  const double* curve;
+  size_t curve_count;
+  int32_t number;
 } iso_parameter;
 
 /* Adjoint: one solve an output; tangent: one solve a parameter. */
@@ -519,6 +536,10 @@ typedef struct iso_gradient_table {
   const char* const* undecided; /* effects whose rows are about to touch or to let go */
   size_t undecided_count;
   int32_t adjoint; /* how it was found */
+  /* Of trajectories: states that were kept at most at a time, steps that were made again, bytes of a state.
+   */
+  int32_t kept_states, steps_again;
+  size_t state_bytes;
 } iso_gradient_table;
 /* Gradients of outputs of an equilibrium of statics by parameters of the scene. The state stays as it is.
  * Pointers are good until the next call of iso_gradients(). */
@@ -528,14 +549,14 @@ typedef struct iso_trajectory_query {
   size_t size;
   const double* steps; /* lengths of `step_count` increments from the state that the world is at [s] */
   size_t step_count;
-  const iso_output* terms;    /* `term_count` positions, distances, points and gauges, ... */
+  const iso_output* terms;    /* `term_count` outputs, ... */
   const int32_t* term_steps;  /* ... each at the end of a step, from 1, or 0: at the start */
   const int32_t* term_output; /* the output that each adds to, 0 to `output_count` - 1; null: each its own */
   size_t term_count, output_count;
   const iso_parameter* parameters;
   size_t parameter_count;
   int32_t mode;        /* ISO_GRADIENTS_... */
-  int32_t kept_states; /* of the way; others are made again. 0: all are kept */
+  int32_t kept_states; /* of the way, at a time; others are made again. 0: all are kept */
 } iso_trajectory_query;
 /* Goes through the increments, as iso_step() does, and finds the gradients of what is seen on the way. The
  * world is at their end then, on an error where it was. Pointers are good until the next call of

@@ -13,15 +13,15 @@ static void must(int holds, const char* what) {
   exit(1);
 }
 
-enum { YOUNG, DENSITY, GRAVITY, TRACTION, SPRING, PUSH, STRETCH, KNOBS };
+enum { YOUNG, DENSITY, GRAVITY, TRACTION, SPRING, PUSH, STRETCH, RATIO, KNOBS };
 /* Of an equilibrium; a way through time has a parameter more. */
-enum { OUTPUTS = 6, PARAMETERS = 9, ALL_PARAMETERS = 10, NODES = 36 };
+enum { OUTPUTS = 11, PARAMETERS = 10, ALL_PARAMETERS = 11, NODES = 36, CURVE = 9, VELOCITY = 10 };
 
 typedef struct scene {
   iso_world* world;
   iso_body body;
   iso_effect clamp, rows, pull, spring;
-  double knob[KNOBS];
+  double knob[KNOBS], curve[2];
   double motion[3 * NODES], vectors[3 * NODES];
   char material[100], spring_keys[200];
 } scene;
@@ -78,8 +78,8 @@ static void make_in(scene* s, const double* knob, int32_t scheme) {
   snprintf(s->material, sizeof s->material, "{\"young\": %.17g, \"poisson\": 0.45}", knob[YOUNG]);
   snprintf(s->spring_keys, sizeof s->spring_keys,
            "{\"name\": \"spring\", \"from\": [2, 0, 2], \"points\": [[1.5, 0.4, 0.6]], \"control\": "
-           "\"length_ratio\", \"amount\": 0.9, \"stiffness\": %.17g}",
-           knob[SPRING]);
+           "\"length_ratio\", \"amount\": %.17g, \"stiffness\": %.17g}",
+           knob[RATIO], knob[SPRING]);
   ok(s, iso_add_soft_body(s->world, "bar", mesh, knob[YOUNG], 0.45, knob[DENSITY], &s->body));
   iso_mesh_free(mesh);
   ok(s, iso_add_volume(s->world, s->body, &s->rows));
@@ -98,6 +98,27 @@ static void make_in(scene* s, const double* knob, int32_t scheme) {
 static void make(scene* s, const double* knob) {
   make_in(s, knob, ISO_STATICS);
   ok(s, iso_advance(s->world, 1, NULL));
+}
+
+/* Half the square of all distances from the origin. */
+static double spread(void* user, const double* x, double* gradient, size_t count) {
+  double sum = 0;
+  size_t k;
+  ++*(int*)user;
+  for (k = 0; k < 3 * count; ++k) {
+    sum += 0.5 * x[k] * x[k];
+    gradient[k] = x[k];
+  }
+  return sum;
+}
+static int spreads = 0;
+
+static double no_number(void* user, const double* x, double* gradient, size_t count) {
+  (void)user;
+  (void)x;
+  (void)count;
+  gradient[0] = NAN;
+  return 1;
 }
 
 static void make_outputs(scene* s, iso_output* o) {
@@ -122,6 +143,17 @@ static void make_outputs(scene* s, iso_output* o) {
   o[ISO_OUTPUT_REACTION].effect = s->clamp;
   o[ISO_OUTPUT_REACTION].force[0] = 1;
   o[ISO_OUTPUT_REACTION].moment[1] = 0.5;
+  o[ISO_OUTPUT_ENERGY].quantity = "gravity";
+  o[ISO_OUTPUT_SQUARE].nodes = nodes;
+  o[ISO_OUTPUT_SQUARE].count = 2;
+  o[ISO_OUTPUT_SQUARE].target = 0.3;
+  o[ISO_OUTPUT_STRESS].cell = 17;
+  o[ISO_OUTPUT_STRESS].quantity = "von_mises";
+  o[ISO_OUTPUT_EFFECT_FORCE].effect = s->spring;
+  o[ISO_OUTPUT_EFFECT_FORCE].direction[0] = 0.4;
+  o[ISO_OUTPUT_EFFECT_FORCE].direction[2] = 1;
+  o[ISO_OUTPUT_OF_POSITIONS].function = spread;
+  o[ISO_OUTPUT_OF_POSITIONS].user = &spreads;
 }
 
 static const char* spring_of(void* user, double value) {
@@ -158,8 +190,15 @@ static void make_parameters(scene* s, iso_parameter* p) {
   p[ISO_PARAMETER_CONSTANT_OF].value = s->knob[SPRING];
   p[ISO_PARAMETER_SHAPE].motion = s->motion;
   p[ISO_PARAMETER_SHAPE].count = NODES;
-  p[ISO_PARAMETER_INITIAL_VELOCITY].motion = s->motion;
-  p[ISO_PARAMETER_INITIAL_VELOCITY].count = NODES;
+  /* The one of ways through time comes last. */
+  p[CURVE].kind = ISO_PARAMETER_CURVE_POINT;
+  p[CURVE].effect = s->spring;
+  s->curve[1] = s->knob[RATIO];
+  p[CURVE].curve = s->curve;
+  p[CURVE].curve_count = 1;
+  p[VELOCITY].kind = ISO_PARAMETER_INITIAL_VELOCITY;
+  p[VELOCITY].motion = s->motion;
+  p[VELOCITY].count = NODES;
 }
 
 static iso_gradient_query query_of(const iso_output* o, size_t outputs, const iso_parameter* p,
@@ -205,11 +244,11 @@ static void difference(const double* knob, int which, double* out) {
   }
 }
 
-static const double knobs[KNOBS] = {1e4, 1000, -2, 200, 900, 1, 0};
+static const double knobs[KNOBS] = {1e4, 1000, -2, 200, 900, 1, 0, 0.9};
 
 static void every_output_by_every_parameter(void) {
   static const int knob_of[PARAMETERS] = {TRACTION, PUSH, GRAVITY, DENSITY, YOUNG,
-                                          YOUNG,    -1,   SPRING,  STRETCH};
+                                          YOUNG,    -1,   SPRING,  STRETCH, RATIO};
   scene s;
   iso_output o[OUTPUTS];
   iso_parameter p[ALL_PARAMETERS], numbers[PARAMETERS];
@@ -229,6 +268,7 @@ static void every_output_by_every_parameter(void) {
   ok(&s, iso_state_hash(s.world, &after));
   must(before == after, "the state stays as it is");
   must(calls > 4, "the function of the caller is asked");
+  must(spreads > 0, "and that of positions");
   must(t.adjoint == 1 && t.regular == 1 && t.note[0] == 0 && t.undecided_count == 0,
        "an adjoint that is regular");
   must(t.output_count == OUTPUTS && t.column_count == PARAMETERS - 1 + cells &&
@@ -320,7 +360,7 @@ static void outputs_that_are_refused(void) {
   iso_gradient_query q;
   make(&s, knobs);
   make(&other, knobs);
-  ASK(o[1].kind = 6, "outputs[1]: kind = 6; give one of ISO_OUTPUT_...");
+  ASK(o[1].kind = 11, "outputs[1]: kind = 11; give one of ISO_OUTPUT_...");
   ASK(p[2].kind = -1, "parameters[2]: kind = -1; give one of ISO_PARAMETER_...");
   ASK(q.mode = 3, "query->mode = 3");
   ASK(q.mode = ISO_GRADIENTS_TANGENT, "ask by the adjoint");
@@ -341,6 +381,13 @@ static void outputs_that_are_refused(void) {
   ASK(o[3].quantity = NULL, "outputs[3]: quantity is a null pointer");
   ASK(o[3].quantity = "color", "outputs[3]: gauge \"color\" of effect \"spring\": there is no such gauge");
   ASK(o[4].effect = s.pull, "outputs[4]: effect \"pull\" has no reaction");
+  ASK(o[6].quantity = "heat", "outputs[6]: there is no energy \"heat\"");
+  ASK(o[7].target = NAN, "outputs[7]: target = nan");
+  ASK(o[8].cell = 999, "there is no cell 999");
+  ASK(o[9].effect = s.clamp, "take the reaction of a support");
+  ASK(o[9].direction[1] = INFINITY, "outputs[9]: the direction is (0.4, inf, 1)");
+  ASK(o[10].function = NULL, "outputs[10]: function is a null pointer");
+  ASK(o[10].function = no_number, "outputs[10]: the function of positions makes 1, or a gradient");
   must(iso_world_free(s.world) == ISO_OK && iso_world_free(other.world) == ISO_OK, "worlds are freed");
 }
 
@@ -369,6 +416,9 @@ static void parameters_that_are_refused(void) {
   ASK(p[7].effect_kind = "cabel", "did you mean \"cable\"");
   ASK(p[8].count = 5, "parameters[8]: shape: motion has 5 vectors");
   ASK(p[5].step = -1, "parameters[5]: step = -1");
+  ASK(p[CURVE].curve = NULL, "parameters[9]: curve is a null pointer");
+  ASK(p[CURVE].number = 1, "parameters[9]: curve of effect \"spring\": there is no point 1");
+  ASK(s.curve[1] = 0.8, "but the amount is 0.9");
   must(iso_gradients(s.world, &q, NULL) == ISO_REFUSED, "there must be a place for the answer");
   must(iso_world_free(s.world) == ISO_OK, "a world is freed");
 }
@@ -386,7 +436,7 @@ static void queries_that_are_refused(void) {
   make_outputs(&s, o);
   memset(later, 0, sizeof later);
   later[0].now = o[2];
-  later[1].now = o[5];
+  later[1].now = o[ISO_OUTPUT_ELASTIC_ENERGY];
   later[0].now.size = later[1].now.size = sizeof later[0];
   q = query_of(&later[0].now, 2, NULL, 0);
   ok(&s, iso_gradients(s.world, &q, &t));
@@ -405,8 +455,8 @@ static void queries_that_are_refused(void) {
 
 enum { TERMS = 3, SUMS = 2, STEPS = 3, SEEN = 3 };
 
-/* The tip at the end, and the distances of all nodes from targets at two times; by Young's modulus, the traction
- * and the velocity at the start, which is `speed` times the motion. */
+/* The tip at the end, and the distances of all nodes from targets at two times; by Young's modulus, the
+ * traction and the velocity at the start, which is `speed` times the motion. */
 static void go_the_way(const double* knob, double speed, int32_t mode, int32_t kept, double* values,
                        double* jacobian) {
   static const double steps[STEPS] = {0.02, 0.03, 0.02};
@@ -427,7 +477,7 @@ static void go_the_way(const double* knob, double speed, int32_t mode, int32_t k
   o[1] = o[2] = all[ISO_OUTPUT_DISTANCE];
   asked[0] = p[ISO_PARAMETER_MATERIAL];
   asked[1] = p[ISO_PARAMETER_AMOUNT_OF];
-  asked[2] = p[ISO_PARAMETER_INITIAL_VELOCITY];
+  asked[2] = p[VELOCITY];
   memset(&q, 0, sizeof q);
   q.size = sizeof q;
   q.steps = steps;
@@ -448,6 +498,8 @@ static void go_the_way(const double* knob, double speed, int32_t mode, int32_t k
   if (jacobian) memcpy(jacobian, t.jacobian, SUMS * SEEN * sizeof *jacobian);
   ok(&s, iso_time(s.world, &end));
   must(fabs(end - 0.07) < 1e-12, "the world is at the end of the way");
+  if (jacobian && mode == ISO_GRADIENTS_ADJOINT)
+    must(t.kept_states == (kept ? kept : STEPS - 1) && t.state_bytes > 48 * NODES, "what is kept is told");
   must(iso_world_free(s.world) == ISO_OK, "a world is freed");
 }
 

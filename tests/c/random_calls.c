@@ -26,6 +26,7 @@ static double number(void) {
 /* Outputs and parameters of all kinds and of none, by what may be there. */
 static iso_status gradients(iso_world* world, iso_body body, iso_effect effect, const double* v) {
   static const char* texts[] = {"young", "{\"young\": 1e4, \"poisson\": 0.4}", "volume", "", "nowhere", NULL};
+  static const char* measures[] = {"von_mises", "pressure", "gravity", "kinetic"};
   const int32_t nodes[] = {0, (int32_t)dice(40) - 5};
   iso_output output;
   iso_parameter parameter;
@@ -39,16 +40,21 @@ static iso_status gradients(iso_world* world, iso_body body, iso_effect effect, 
   query.size = sizeof query;
   output.size = dice(6) == 0 ? dice(64) : sizeof output;
   parameter.size = dice(6) == 0 ? dice(64) : sizeof parameter;
-  output.kind = (int32_t)dice(8) - 1;
+  output.kind = (int32_t)dice(13) - 1;
+  output.cell = (int32_t)dice(40) - 5;
+  output.target = number();
   output.body = parameter.body = body;
   output.effect = parameter.effect = effect;
   output.nodes = dice(4) == 0 ? NULL : nodes;
   output.vectors = v;
   output.count = dice(2);
-  output.quantity = texts[dice(6)];
+  output.quantity = dice(3) == 0 ? measures[dice(4)] : texts[dice(6)];
   memcpy(output.direction, v, sizeof output.direction);
   memcpy(output.force, v, sizeof output.force);
-  parameter.kind = (int32_t)dice(12) - 1;
+  parameter.kind = (int32_t)dice(13) - 1;
+  parameter.curve = dice(4) == 0 ? NULL : v;
+  parameter.curve_count = dice(2);
+  parameter.number = (int32_t)dice(3) - 1;
   memcpy(parameter.vector, v, sizeof parameter.vector);
   parameter.motion = v;
   parameter.count = dice(2);

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "catch.h"
-#include "support/files.h"
+#include "support/shell.h"
 
 using Json = nlohmann::json;
 using Catch::Matchers::Contains;
@@ -20,40 +20,15 @@ using files::slurp;
 
 namespace {
 
-struct Outcome {
-  int code = -1;
-  std::string out, err;
-};
+using test::Outcome;
 
-class Shell {
+class Shell : public test::Shell {
  public:
-  Shell()
-      : folder_(fs::temp_directory_path() / std::string("isochor_cli_").append(std::to_string(::getpid()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~Shell() {
-    std::error_code code;
-    fs::remove_all(folder_, code);
-  }
-  const fs::path& folder() const { return folder_; }
-
+  Shell() : test::Shell("cli") {}
   // Runs in the shell's own folder; `before`: what the shell is told before that.
   Outcome run(const std::string& arguments, const std::string& before = "") const {
-    std::string command = "cd '";
-    command.append(folder_.string()).append("' && ").append(before);
-    command.append("'" ISOCHOR_BINARY "' ").append(arguments);
-    command.append(" > out.txt 2> err.txt");
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000, slurp(folder_ / "out.txt"),
-            slurp(folder_ / "err.txt")};
+    return sh(before + "'" ISOCHOR_BINARY "' " + arguments);
   }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-  }
-
- private:
-  fs::path folder_;
 };
 
 const char* const kBlock = R"({

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "catch.h"
-#include "support/files.h"
+#include "support/shell.h"
 
 using Json = nlohmann::json;
 using Catch::Matchers::Contains;
@@ -29,26 +29,12 @@ std::size_t lines(const fs::path& path) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-struct Outcome {
-  int code = -1;  // of a signal: minus its number
-  std::string out, err;
-};
+// `code` of a signal: minus its number.
+using test::Outcome;
 
-// A folder of its own; programs run in it.
-class Desk {
+class Desk : public test::Shell {
  public:
-  Desk() : folder_(fs::temp_directory_path() / ("isochor_resume_" + std::to_string(::getpid()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~Desk() {
-    std::error_code code;
-    fs::remove_all(folder_, code);
-  }
-  fs::path operator/(const std::string& name) const { return folder_ / name; }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-  }
+  Desk() : test::Shell("resume") {}
 
   using Before = void (*)();
   pid_t start(std::vector<std::string> arguments, Before before = nullptr) const {
@@ -58,7 +44,7 @@ class Desk {
     list.push_back(nullptr);
     const pid_t child = ::fork();
     if (child != 0) return child;
-    if (::chdir(folder_.c_str()) != 0) ::_exit(99);
+    if (::chdir(folder().c_str()) != 0) ::_exit(99);
     const int out = ::open("out.txt", O_WRONLY | O_CREAT | O_TRUNC, 0600);
     const int err = ::open("err.txt", O_WRONLY | O_CREAT | O_TRUNC, 0600);
     ::dup2(out, 1);
@@ -70,8 +56,8 @@ class Desk {
   Outcome wait(pid_t child) const {
     int status = 0;
     ::waitpid(child, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), slurp(folder_ / "out.txt"),
-            slurp(folder_ / "err.txt")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status), slurp(folder() / "out.txt"),
+            slurp(folder() / "err.txt")};
   }
   Outcome run(const std::vector<std::string>& arguments, Before before = nullptr) const {
     return wait(start(arguments, before));
@@ -85,7 +71,7 @@ class Desk {
       if (::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
           info.si_pid == child)
         break;
-      if (lines(folder_ / out / "steps.csv") >= rows) {
+      if (lines(folder() / out / "steps.csv") >= rows) {
         ::kill(child, signal);
         break;
       }
@@ -93,9 +79,6 @@ class Desk {
     }
     return wait(child);
   }
-
- private:
-  fs::path folder_;
 };
 
 // Two blocks that fall on a floor and on each other, with friction; a step of the second kind is cut in two.

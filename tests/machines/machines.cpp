@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "catch.h"
-#include "support/files.h"
+#include "support/shell.h"
 
 using Json = nlohmann::json;
 using Catch::Matchers::Contains;
@@ -21,43 +21,18 @@ using files::slurp;
 
 namespace {
 
-struct Outcome {
-  int code = -1;
-  std::string out, err;
-};
+using test::Outcome;
 
-class Shell {
+class Shell : public test::Shell {
  public:
-  Shell()
-      : folder_(fs::temp_directory_path() /
-                std::string("isochor_machines_").append(std::to_string(::getpid()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~Shell() {
-    std::error_code code;
-    fs::remove_all(folder_, code);
-  }
-  const fs::path& folder() const { return folder_; }
-
-  Outcome sh(const std::string& line) const {
-    const std::string command = "cd '" + folder_.string() + "' && " + line + " > out.txt 2> err.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000, slurp(folder_ / "out.txt"),
-            slurp(folder_ / "err.txt")};
-  }
+  Shell() : test::Shell("machines") {}
   // ranks 0: without mpirun.
   Outcome run(int ranks, const std::string& arguments) const {
     const std::string before =
         ranks > 0 ? "timeout 120 '" ISOCHOR_MPIRUN "' -n " + std::to_string(ranks) + " " : std::string();
     return sh(before + "'" ISOCHOR_BINARY "' run " + arguments);
   }
-  void write(const std::string& name, const Json& scene) const {
-    std::ofstream(folder_ / name) << scene.dump();
-  }
-
- private:
-  fs::path folder_;
+  void write(const std::string& name, const Json& scene) const { test::Shell::write(name, scene.dump()); }
 };
 
 Json block() {

@@ -8,6 +8,8 @@
 
 #include "engine/base/base.h"
 #include "engine/solvers/linear_solver.h"
+#include "engine/system/assembly.h"
+#include "support/compiled.h"
 #include "support/worlds.h"
 
 using namespace test;
@@ -246,5 +248,90 @@ TEST_CASE("what is not shared out over ranks is refused on all of them, by name"
   for (const Outcome& rank : refused) {
     CHECK_THAT(rank.refusal,
                ContainsSubstring("augmented_gradients") && ContainsSubstring("run on one process"));
+  }
+}
+
+namespace {
+
+// All that an assembly adds up, in one list.
+std::vector<double> sums_of(std::shared_ptr<const isochor::System> system) {
+  const isochor::TbbParallel parallel(1);
+  isochor::Assembly assembly(system, parallel);
+  const auto& rest = system->parts().rest;
+  std::vector<Vec3> x(rest), v(rest.size()), nodes(rest.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double k = static_cast<double>(i);
+    x[i] += 0.004 * Vec3{std::sin(k), std::cos(3 * k), std::sin(2 * k)};
+    v[i] = {std::cos(k), std::sin(5 * k), 1};
+  }
+  std::vector<double> lambda(at(system->rows())), prescribed(at(system->prescribed_rows())),
+      rows(lambda.size()), numbers(x.size());
+  for (std::size_t r = 0; r < lambda.size(); ++r) lambda[r] = 1e3 * std::sin(static_cast<double>(r));
+  assembly.evaluate(isochor::Want::hessian, isochor::Definiteness::exact, x, lambda, prescribed);
+  std::vector<double> out{assembly.energy(), assembly.absolute_energy()};
+  const auto put_rows = [&] { out.insert(out.end(), rows.begin(), rows.end()); };
+  const auto put_nodes = [&] {
+    for (const Vec3& n : nodes) out.insert(out.end(), {n.x, n.y, n.z});
+  };
+  assembly.row_values(rows);
+  put_rows();
+  assembly.jacobian_times(v, rows);
+  put_rows();
+  assembly.residual(nodes);
+  put_nodes();
+  assembly.constraint_force(lambda, nodes);
+  put_nodes();
+  assembly.hessian_times(v, nodes);
+  put_nodes();
+  assembly.mass_times(v, nodes);
+  put_nodes();
+  for (const auto magnitude :
+       {&isochor::Assembly::residual_magnitude, &isochor::Assembly::stiffness_diagonal}) {
+    (assembly.*magnitude)(numbers);
+    out.insert(out.end(), numbers.begin(), numbers.end());
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("what an assembly adds up is the same on every rank as on one process") {
+  for (const auto space :
+       {isochor::VolumeSpace::node, isochor::VolumeSpace::element, isochor::VolumeSpace::body}) {
+    CAPTURE(static_cast<int>(space));
+    isochor::BodyDef body;
+    body.mesh = block({0, 0, 0}, {0.2, 0.1, 0.1}, {6, 2, 2});
+    body.element = isochor::Element::tet4;
+    body.materials = {{"", neo_hookean(1e5, 0.45), 1000}};
+    isochor::VolumeDef volume;
+    volume.space = space;
+    isochor::MembraneDef skin;
+    skin.surfaces = {"z1"};
+    skin.young = 1e5;
+    skin.thickness = 1e-3;
+    const Compiled alone = compile({body}, {isochor::volume(volume), isochor::membrane(skin)});
+    REQUIRE(alone.error.empty());
+    const std::vector<double> wanted = sums_of(alone.system);
+    for (const int size : {2, 3}) {
+      Table table(size);
+      std::vector<std::vector<double>> found(static_cast<std::size_t>(size));
+      std::vector<std::thread> threads;
+      for (int r = 0; r < size; ++r) {
+        threads.emplace_back([&, r] {
+          isochor::SystemParts parts = alone.system->parts();
+          parts.ranks = std::make_shared<ThreadRanks>(table, r);
+          auto shared = isochor::System::compile(std::move(parts));
+          if (shared) found[static_cast<std::size_t>(r)] = sums_of(shared.value());
+        });
+      }
+      for (std::thread& t : threads) t.join();
+      for (const auto& rank : found) {
+        REQUIRE(rank.size() == wanted.size());
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+          if (std::abs(rank[i] - wanted[i]) > 1e-10 * (1 + std::abs(wanted[i])))
+            FAIL(size << " ranks, number " << i << ": " << rank[i] << ", not " << wanted[i]);
+        }
+      }
+    }
   }
 }

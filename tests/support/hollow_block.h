@@ -25,6 +25,7 @@ struct Knobs {
   double shape = 0;                // of shape_motion()
   double viscosity = 0, drag = 0;  // of a damping [Pa s], [1/s]
   double velocity = 0;             // of shape_motion(), at the start [1/s]
+  double late = 600;               // of a cavity whose pressure changes: what it gets to
   std::vector<double> field;       // stiffness of cells; empty: uniform
 };
 inline constexpr Vec3 kPushed{1, 1. / 3, 1. / 3}, kPush{1, 4, 6};  // at a node
@@ -33,8 +34,9 @@ struct Kind {
   isochor::Element element = isochor::Element::tet4;
   isochor::VolumeSpace space = isochor::VolumeSpace::node;
   isochor::CavityControl control = isochor::CavityControl::pressure;
-  double guard = 0;    // stiffness of an element guard that acts everywhere; 0: as it is by default
-  bool pulled = true;  // by the cable
+  double guard = 0;       // stiffness of an element guard that acts everywhere; 0: as it is by default
+  bool pulled = true;     // by the cable
+  bool changing = false;  // the cavity's amount, in time
 };
 
 struct Block {
@@ -127,6 +129,11 @@ inline isochor::CableDef cable_of(const Knobs& knobs, const Kind&) {
   return def;
 }
 
+inline isochor::Curve cavity_curve(const Knobs& knobs, const Kind& kind) {
+  if (!kind.changing) return isochor::Curve::constant(knobs.cavity);
+  return {{{0.02, knobs.cavity}, {0.12, knobs.late}}};
+}
+
 inline isochor::DampingDef damping_of(const Knobs& knobs) {
   isochor::DampingDef def;
   def.viscosity = knobs.viscosity;
@@ -159,7 +166,7 @@ inline Block build_block(const Knobs& knobs, const Kind& kind,
   cavity.body = b.body;
   cavity.surfaces = {"hollow"};
   cavity.control = kind.control;
-  cavity.amount = isochor::Curve::constant(knobs.cavity);
+  cavity.amount = cavity_curve(knobs, kind);
   b.cavity = value(b.world.add(isochor::cavity(cavity)));
   if (kind.pulled) {
     isochor::CableDef cable = cable_of(knobs, kind);

@@ -5,70 +5,26 @@
 #include <limits>
 #include <set>
 
-#include "support/hollow_block.h"
+#include "support/derivative_lists.h"
 
 using namespace test;
 using Catch::Matchers::WithinAbs;
-using isochor::GradientQuery;
-using isochor::Gradients;
-using isochor::Output;
-using isochor::Parameter;
 using isochor::VolumeSpace;
 
 namespace {
 
-// A parameter, and where in the knobs it is.
-struct Asked {
-  std::string name;
-  Parameter parameter;
-  double Knobs::*knob;
-};
-
-std::vector<Asked> all_parameters(const Block& block) {
-  const Knobs k = block.knobs;
-  const Kind kind = block.kind;
-  std::vector<Vec3> motion = shape_motion(block.world.mesh(block.body));
-  return {
-      {"amount of a support", Parameter::amount_of(block.clamp), &Knobs::clamp},
-      {"amount of a cavity", Parameter::amount_of(block.cavity), &Knobs::cavity},
-      {"amount of a cable", Parameter::amount_of(block.cable), &Knobs::cable},
-      {"force", Parameter::force_at(block.body, kPushed, kPush), &Knobs::push},
-      {"gravity", Parameter::gravity({0, 0, 1}), &Knobs::gravity},
-      {"density", Parameter::density(block.body), &Knobs::density},
-      {"Young's modulus",
-       Parameter::material(block.body, "", k.young, [k](double v) { return material_of(v, k.poisson, k); }),
-       &Knobs::young},
-      {"Poisson's ratio",
-       Parameter::material(block.body, "", k.poisson, [k](double v) { return material_of(k.young, v, k); }),
-       &Knobs::poisson},
-      {"stiffness", Parameter::stiffness(block.body), &Knobs::stiffness},
-      {"stiffness of the cable",
-       Parameter::constant_of(block.cable, k.spring,
-                              [k, kind](double v) {
-                                Knobs other = k;
-                                other.spring = v;
-                                return isochor::cable(cable_of(other, kind));
-                              }),
-       &Knobs::spring},
-      {"shape", Parameter::shape(block.body, std::move(motion)), &Knobs::shape},
-  };
-}
-
 std::vector<std::pair<std::string, Output>> all_outputs(const Block& block) {
   const Index tip = nearest_node(block.world.rest_positions(block.body), {1, 1, 1});
   const Index next = nearest_node(block.world.rest_positions(block.body), {1, 0, 1});
-  return {
+  std::vector<std::pair<std::string, Output>> out{
       {"node", Output::node(block.body, tip, {0.3, -0.2, 1})},
       {"two nodes", Output::positions(block.body, {tip, next}, {{0, 0, 1}, {0, 0, -1}})},
       {"point", Output::material_point(block.body, {0.9, 0.4, 0.8}, {0, 1, 1})},
       {"distance", Output::distance(block.body, {tip, next}, {{1.1, 1, 1.2}, {1, 0.1, 1}})},
-      {"volume", Output::gauge(block.cavity, "volume")},
-      {"pressure", Output::gauge(block.cavity, "pressure")},
-      {"tension", Output::gauge(block.cable, "tension")},
-      {"length", Output::gauge(block.cable, "length")},
-      {"reaction", Output::reaction(block.clamp, {1, 0.5, -0.2}, {0.1, 0.2, 0.3})},
-      {"energy", Output::elastic_energy()},
-  };
+      {"square", Output::square(block.body, {tip, next}, {{0, 1, 1}, {0.5, 0, -1}}, 0.7)},
+      {"function", spread(block.body)}};
+  for (auto& one : measures_of(block)) out.push_back(std::move(one));
+  return out;
 }
 
 std::vector<Output> just_outputs(const Block& block) {
@@ -85,35 +41,11 @@ std::vector<double> values_of(const Knobs& knobs, const Kind& kind) {
   return value(block.world.gradients(query)).values;
 }
 
-// Central, or from below where the knob ends there.
-std::vector<double> difference(const Block& block, double Knobs::*knob) {
-  const double at = block.knobs.*knob;
-  const bool ends = knob == &Knobs::poisson && at == 0.5;
-  double h = 2e-3 * (at == 0 ? 0.1 : std::abs(at));
-  // What rows answer bends with the distance to 0.5.
-  if (knob == &Knobs::poisson && !ends) h = 2e-2 * (0.5 - at);
-  const std::vector<std::pair<int, double>> rule =
-      ends ? std::vector<std::pair<int, double>>{{0, 137. / 60}, {-1, -5},     {-2, 5},
-                                                 {-3, -10. / 3}, {-4, 5. / 4}, {-5, -1. / 5}}
-           : std::vector<std::pair<int, double>>{{-2, 1. / 12}, {-1, -8. / 12}, {1, 8. / 12}, {2, -1. / 12}};
-  std::vector<double> sum;
-  for (const auto& [step, weight] : rule) {
-    Knobs moved = block.knobs;
-    moved.*knob = at + step * h;
-    const std::vector<double> there = values_of(moved, block.kind);
-    sum.resize(there.size());
-    for (std::size_t j = 0; j < there.size(); ++j) sum[j] += weight / h * there[j];
-  }
-  return sum;
-}
-
-// What a change of each output is compared with: its own size per size of the parameter.
 void check_list(const Knobs& knobs, const Kind& kind) {
   Block block = make_block(knobs, kind);
   GradientQuery query;
   query.outputs = just_outputs(block);
-  const auto outputs = all_outputs(block);
-  const auto asked = all_parameters(block);
+  const auto asked = parameters_of(block);
   for (const Asked& a : asked) query.parameters.push_back(a.parameter);
   const std::uint64_t before = block.world.state_hash();
   query.mode = GradientQuery::Mode::adjoint;
@@ -125,31 +57,10 @@ void check_list(const Knobs& knobs, const Kind& kind) {
   CHECK_FALSE(tangent.adjoint);
   CHECK(adjoint.regular);
   CHECK(adjoint.values == tangent.values);
-  // Outputs of one kind have sizes of their own: the largest change of each is what counts.
-  std::vector<double> largest(outputs.size(), 0);
-  std::vector<double> size;
-  for (const Asked& a : asked) size.push_back(knobs.*a.knob == 0 ? 0.1 : std::abs(knobs.*a.knob));
-  for (std::size_t j = 0; j < outputs.size(); ++j) {
-    for (std::size_t p = 0; p < asked.size(); ++p)
-      largest[j] = std::max(largest[j], std::abs(adjoint.of(j, p)) * size[p]);
-  }
-  for (std::size_t p = 0; p < asked.size(); ++p) {
-    const std::vector<double> wanted = difference(block, asked[p].knob);
-    for (std::size_t j = 0; j < outputs.size(); ++j) {
-      INFO(outputs[j].first << " by " << asked[p].name);
-      const double scale = largest[j] / size[p];
-      // Points inside of cells stay where they are in the mesh, and the judge looks them up anew.
-      if (outputs[j].first != "point" || asked[p].name != "shape")
-        CHECK_THAT(adjoint.of(j, p), WithinAbs(wanted[j], 1e-6 * scale));
-      CHECK_THAT(adjoint.of(j, p), WithinAbs(tangent.of(j, p), 1e-10 * scale));
-    }
-  }
-}
-
-template <class T>
-std::string refusal(const isochor::Result<T>& result) {
-  REQUIRE_FALSE(result.ok());
-  return result.error();
+  std::vector<std::string> names;
+  for (const auto& [name, output] : all_outputs(block)) names.push_back(name);
+  check_all(knobs, names, asked, {adjoint, tangent}, 1e-3,
+            [&](const Knobs& moved) { return values_of(moved, kind); });
 }
 
 }  // namespace
@@ -166,14 +77,59 @@ TEST_CASE("every output by every parameter, with all elements and rows, is what 
   }
 }
 
+TEST_CASE("outputs are what the world says of itself", "[gradients]") {
+  for (const auto element : kAllElements) {
+    CAPTURE(name_of(element));
+    Knobs knobs;
+    knobs.poisson = 0.49;
+    Block block = make_block(knobs, {element, VolumeSpace::node, isochor::CavityControl::pressure});
+    const isochor::BodyFields fields = block.world.fields(block.body);
+    const isochor::Energies e = block.world.energies();
+    GradientQuery query;
+    std::vector<double> wanted;
+    const auto is = [&](Output o, double number) {
+      query.outputs.push_back(std::move(o));
+      wanted.push_back(number);
+    };
+    const auto cell = static_cast<Index>(fields.cell_J.size() / 3);
+    is(Output::stress(block.body, cell, "von_mises"), fields.cell_von_mises[static_cast<std::size_t>(cell)]);
+    is(Output::stress(block.body, cell, "pressure"), fields.cell_pressure[static_cast<std::size_t>(cell)]);
+    std::size_t k = 6 * static_cast<std::size_t>(cell);
+    for (const char* component : {"xx", "yy", "zz", "xy", "yz", "zx"})
+      is(Output::stress(block.body, cell, component), fields.cell_stress[k++]);
+    is(Output::energy("elastic"), e.elastic);
+    is(Output::energy("gravity"), e.gravity);
+    is(Output::energy("loads"), e.loads);
+    is(Output::energy("pressures"), e.pressures);
+    is(Output::energy("potential"), e.potential());
+    const auto told = value(block.world.gradients(query)).values;
+    for (std::size_t j = 0; j < wanted.size(); ++j) {
+      CAPTURE(j);
+      CHECK_THAT(told[j],
+                 WithinAbs(wanted[j], 1e-12 * std::abs(wanted[j]) + 1e-12 * fields.cell_von_mises[0]));
+    }
+    // A chamber pushes on all sides: on a body it has no force in all but on the rim, and a cable pulls by
+    // what it ends at.
+    GradientQuery forces;
+    forces.outputs = {Output::effect_force(block.cavity, block.body, {0, 1, 0}),
+                      Output::effect_force(block.cable, block.body, {1, 0, 0}),
+                      Output::gauge(block.cable, "tension")};
+    const auto pull = value(block.world.gradients(forces)).values;
+    CHECK_THAT(pull[0], WithinAbs(0, 1e-9 * knobs.cavity));
+    CHECK(pull[1] < 0);
+    CHECK(-pull[1] <= pull[2]);
+  }
+}
+
 TEST_CASE("the list asks for every kind of output and of parameter", "[gradients]") {
   const Block block = make_block({}, {});
   std::set<Output::Kind> outputs;
   std::set<Parameter::Kind> parameters{Parameter::Kind::cells};  // in a case of its own
   for (const auto& [name, o] : all_outputs(block)) outputs.insert(o.kind);
-  for (const Asked& a : all_parameters(block)) parameters.insert(a.parameter.kind);
-  CHECK(outputs.size() == 1 + static_cast<std::size_t>(Output::Kind::energy));
-  CHECK(parameters.size() == 1 + static_cast<std::size_t>(Parameter::Kind::shape));
+  for (const Asked& a : parameters_of(block)) parameters.insert(a.parameter.kind);
+  parameters.insert(Parameter::Kind::velocity);  // of ways through time
+  CHECK(outputs.size() == 1 + static_cast<std::size_t>(Output::Kind::function));
+  CHECK(parameters.size() == 1 + static_cast<std::size_t>(Parameter::Kind::curve));
 }
 
 TEST_CASE("the same with rows of every space, and with a chamber of given volume", "[gradients]") {
@@ -240,16 +196,11 @@ TEST_CASE(
   const Index tip = nearest_node(block.world.rest_positions(block.body), {1, 1, 1});
   GradientQuery query;
   query.outputs = {Output::node(block.body, tip, {1, 0, 0}), Output::node(block.body, tip, {0, 0, 1})};
-  const Knobs k = knobs;
   const std::vector<Vec3> along(static_cast<std::size_t>(block.world.mesh(block.body).node_count()),
                                 {1, 0, 0});
   query.parameters = {Parameter::stiffness(block.body), Parameter::amount_of(block.cavity),
                       Parameter::gravity({0, 0, 1}), Parameter::force_at(block.body, kPushed, kPush),
-                      Parameter::constant_of(block.cable, k.spring, [k, kind = block.kind](double v) {
-                        Knobs other = k;
-                        other.spring = v;
-                        return isochor::cable(cable_of(other, kind));
-                      })};
+                      cable_stiffness(block)};
   const std::vector<double> size = {1, knobs.cavity, knobs.gravity, knobs.push, knobs.spring};
   const Gradients g = value(block.world.gradients(query));
   for (std::size_t j = 0; j < 2; ++j) {
@@ -278,6 +229,45 @@ TEST_CASE(
   CHECK_THAT(moved.of(0, 0), WithinAbs(1, 1e-9));
   CHECK_THAT(moved.of(1, 0), WithinAbs(0, 1e-9));
   CHECK_THAT(moved.of(2, 0), WithinAbs(0, 1e-7 * std::abs(moved.values[2])));
+}
+
+TEST_CASE("outputs and points of curves that there are none of are refused by name", "[gradients]") {
+  Block block = make_block({}, {isochor::Element::tet4, VolumeSpace::node, isochor::CavityControl::pressure});
+  const auto asked = [&](Output o, Parameter p) {
+    GradientQuery query;
+    query.outputs = {std::move(o)};
+    query.parameters = {std::move(p)};
+    return refusal(block.world.gradients(query));
+  };
+  const Output tip = Output::node(block.body, 0, {1, 0, 0});
+  const Parameter weight = Parameter::density(block.body);
+  CHECK_THAT(asked(Output::energy("heat"), weight),
+             ContainsSubstring("outputs[0]: there is no energy \"heat\""));
+  CHECK_THAT(asked(Output::energy("kinetic"), weight), ContainsSubstring("nothing moves in statics"));
+  CHECK_THAT(asked(Output::stress(block.body, 99999, "xx"), weight), ContainsSubstring("no cell 99999"));
+  CHECK_THAT(asked(Output::stress(block.body, 0, "tresca"), weight), ContainsSubstring("none of that name"));
+  CHECK_THAT(asked(Output::effect_force(block.clamp, block.body, {1, 0, 0}), weight),
+             ContainsSubstring("take the reaction"));
+  CHECK_THAT(asked(Output::square(block.body, {0}, {{1, 0, 0}}, std::nan("")), weight),
+             ContainsSubstring("target = nan"));
+  CHECK_THAT(asked(Output::of_positions(block.body, nullptr), weight), ContainsSubstring("no function"));
+  CHECK_THAT(asked(Output::of_positions(block.body,
+                                        [](std::span<const Vec3>, std::span<Vec3>) {
+                                          return isochor::Result<double>(isochor::Error{"out of range"});
+                                        }),
+                   weight),
+             ContainsSubstring("out of range"));
+  CHECK_THAT(asked(Output::of_positions(block.body,
+                                        [](std::span<const Vec3>, std::span<Vec3> g) {
+                                          g[3].y = std::nan("");
+                                          return isochor::Result<double>(1.0);
+                                        }),
+                   weight),
+             ContainsSubstring("not finite"));
+  const isochor::Curve level = isochor::Curve::constant(400);
+  CHECK_THAT(asked(tip, Parameter::curve_point(block.cavity, level, 1)), ContainsSubstring("no point 1"));
+  CHECK_THAT(asked(tip, Parameter::curve_point(block.cavity, isochor::Curve::constant(300), 0)),
+             ContainsSubstring("but the amount is 400"));
 }
 
 TEST_CASE("what has no gradient is refused by name", "[gradients]") {
@@ -404,15 +394,65 @@ TEST_CASE("a floor without friction is part of the gradient, and touching says s
   CHECK_THAT(one_sided.note, ContainsSubstring("about to touch"));
 }
 
-TEST_CASE("with friction there are tangents alone, and what holds on is said", "[gradients]") {
-  Pressed rough = pressed(0.001, 0.05, 0.5);
-  GradientQuery query = about(rough);
-  const Gradients g = value(rough.world.gradients(query));
-  CHECK_FALSE(g.adjoint);
-  CHECK_FALSE(g.regular);
-  CHECK_THAT(g.note, ContainsSubstring("friction"));
-  query.mode = GradientQuery::Mode::adjoint;
-  CHECK_THAT(refusal(rough.world.gradients(query)), ContainsSubstring("unsymmetric"));
+TEST_CASE("the force of a contact holds what presses, and goes with it", "[gradients]") {
+  for (const double friction : {0.0, 0.4}) {
+    CAPTURE(friction);
+    Pressed firm = pressed(0.001, 0.05, friction);
+    GradientQuery query;
+    const auto floor = firm.world.effects().back();
+    query.outputs = {Output::effect_force(floor, firm.body, {0, 0, 1}), Output::reaction(firm.top, {0, 0, 1}),
+                     Output::effect_force(floor, firm.body, {1, 0.5, 0})};
+    query.parameters = {Parameter::amount_of(firm.top), Parameter::stiffness(firm.body)};
+    query.mode = GradientQuery::Mode::tangent;
+    const Gradients g = value(firm.world.gradients(query));
+    const auto pairs = firm.world.contact_pairs();
+    REQUIRE(pairs.size() == 1);
+    CHECK_THAT(g.values[0], WithinAbs(pairs[0].force.z, 1e-9 * pairs[0].force.z));
+    CHECK_THAT(g.values[2], WithinAbs(pairs[0].force.x + 0.5 * pairs[0].force.y, 1e-9 * pairs[0].force.z));
+    // Nothing else holds the block, which has no weight.
+    for (std::size_t p = 0; p < query.parameters.size(); ++p) {
+      CHECK(std::abs(g.of(0, p)) > 0);
+      CHECK_THAT(g.of(0, p), WithinAbs(-g.of(1, p), 1e-7 * std::abs(g.of(0, p))));
+    }
+  }
+}
+
+TEST_CASE("with friction the adjoint is that of an unsymmetric matrix, and what holds on is said",
+          "[gradients]") {
+  for (const double friction : {0.1, 0.5, 1.2}) {
+    CAPTURE(friction);
+    Pressed rough = pressed(0.001, 0.05, friction);
+    GradientQuery query = about(rough);
+    const auto floor = rough.world.effects().back();
+    const Index low = nearest_node(rough.world.rest_positions(rough.body), {1, 0.5, 0});
+    query.outputs.push_back(Output::node(rough.body, low, {1, 0.4, 0}));  // that rubs
+    query.outputs.push_back(Output::effect_force(floor, rough.body, {0.3, 1, 0.2}));
+    query.outputs.push_back(Output::stress(rough.body, 3, "von_mises"));
+    query.parameters.push_back(Parameter::gravity({0.2, 0, 1}));
+    query.parameters.push_back(Parameter::force_at(rough.body, {1, 1, 0.5}, {1, 0, -1}));
+    const Gradients tangent = value(rough.world.gradients(query));
+    CHECK_FALSE(tangent.adjoint);
+    CHECK_FALSE(tangent.regular);
+    CHECK_THAT(tangent.note, ContainsSubstring("friction"));
+    query.parameters.push_back(Parameter::cell_stiffness(rough.body));
+    query.mode = GradientQuery::Mode::adjoint;
+    const Gradients adjoint = value(rough.world.gradients(query));
+    CHECK(adjoint.adjoint);
+    for (std::size_t j = 0; j < query.outputs.size(); ++j) {
+      CAPTURE(j);
+      const std::vector<double> sizes{0.05, 1, 1, 10};
+      double scale = 0, sum = 0, most = 0;
+      for (std::size_t p = 0; p < sizes.size(); ++p)
+        scale = std::max(scale, std::abs(tangent.of(j, p)) * sizes[p]);
+      CHECK(scale > 0);
+      for (std::size_t p = 0; p < sizes.size(); ++p) {
+        CAPTURE(p);
+        CHECK_THAT(adjoint.of(j, p), WithinAbs(tangent.of(j, p), 1e-10 * scale / sizes[p]));
+      }
+      for (const double v : adjoint.by[j].back()) sum += v, most = std::max(most, std::abs(v));
+      CHECK_THAT(sum, WithinAbs(adjoint.of(j, 1), 1e-10 * most + 1e-9 * scale));
+    }
+  }
 }
 
 TEST_CASE("an equilibrium behind a limit point is refused unless it is meant", "[gradients]") {

@@ -20,8 +20,8 @@ _MODES = ("automatic", "adjoint", "tangent")
 class Output:
     """A number that an equilibrium shows; its functions make the kinds that there are.
 
-    Linear functions of positions are ``positions``, and of those ``node`` and ``material_point``; ``distance`` is
-    the quadratic one. Arrays are looked at by ``World.gradients``.
+    Linear functions of positions are ``positions``, and of those ``node`` and ``material_point``; ``distance`` and
+    ``square`` are quadratic. Arrays are looked at by ``World.gradients``.
     """
 
     __slots__ = ("kind", "_of", "_given")
@@ -69,6 +69,42 @@ class Output:
         """Of the world [J], as ``World.energies().elastic``."""
         return Output("elastic_energy", None)
 
+    @staticmethod
+    def energy(part: str) -> Output:
+        """Of the world [J]: "elastic", "gravity", "loads", "pressures", "potential"; of ways "kinetic", "total"."""
+        return Output("energy", None, str(part))
+
+    @staticmethod
+    def square(body: _world.Body, nodes: ArrayLike | None, weights: ArrayLike, target: float) -> Output:
+        """Half the square of (the sum of weight . x over nodes - target) [m^2]: quadratic functions are sums of these.
+
+        ``nodes`` and ``weights`` as of ``positions``.
+        """
+        who = "Output.square"
+        number = _world._number(target, f"{who}: target")
+        return Output("square", _body(body, who), _listed(nodes), weights, _ndim(weights) == 1, number)
+
+    @staticmethod
+    def stress(body: _world.Body, cell: int, measure: str) -> Output:
+        """Cauchy stress in a cell as ``Body.fields`` has it [Pa]: "von_mises", "pressure", "xx", "yy", ... "zx"."""
+        return Output("stress", _body(body, "Output.stress"), _whole(cell, "Output.stress: cell"), str(measure))
+
+    @staticmethod
+    def effect_force(effect: _world.LiveEffect, body: _world.Body, direction: ArrayLike) -> Output:
+        """direction . F, F being all that an effect does to a body [N]: a contact, a cable, a cavity, springs."""
+        who = "Output.effect_force"
+        return Output("effect_force", _effect(effect, who), _body(body, who)._id, direction)
+
+    @staticmethod
+    def of_positions(
+        body: _world.Body, function: Callable[[np.ndarray], tuple[float, ArrayLike]]
+    ) -> Output:
+        """What a function makes of the positions of a body, shape (n, 3): a number, and its gradient of that shape."""
+        who = "Output.of_positions"
+        if not callable(function):
+            raise Error(f"{who}: a value of type {type(function).__name__}; give a function")
+        return Output("of_positions", _body(body, who), function)
+
     def _raw(self) -> tuple[Any, ...]:
         return (self.kind, None if self._of is None else self._of._id, *self._given)
 
@@ -94,6 +130,15 @@ class Parameter:
         ``step``: how far it is moved where a difference is taken; 0: 1e-4 of the amount, or of 1.
         """
         return Parameter("amount_of", _effect(effect, "Parameter.amount_of"), step=step)
+
+    @staticmethod
+    def curve_point(
+        effect: _world.LiveEffect, curve: Sequence[tuple[float, float]], number: int, *, step: float = 0.0
+    ) -> Parameter:
+        """The value of one point, from 0, of the curve that the amount of an effect follows: (time, value) pairs."""
+        who = "Parameter.curve_point"
+        pairs = [tuple(_world._number(v, f"{who}: curve[{k}]") for v in pair) for k, pair in enumerate(curve)]
+        return Parameter("curve_point", _effect(effect, who), pairs, _whole(number, f"{who}: number"), step=step)
 
     @staticmethod
     def force_at(body: _world.Body, point: ArrayLike, force: ArrayLike) -> Parameter:
@@ -212,6 +257,12 @@ class Gradients:
     """Names of the effects of such rows"""
     adjoint: bool
     """How it was found: one solve an output, else one a parameter"""
+    kept_states: int = 0
+    """Of trajectories: how many states of the way were kept at most at a time"""
+    steps_again: int = 0
+    """How many steps were made again"""
+    state_bytes: int = 0
+    """What one state takes"""
 
 
 def ask(world: _world.World, outputs: Any, parameters: Any, mode: str, unstable: bool) -> Gradients:

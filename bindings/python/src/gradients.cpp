@@ -51,15 +51,80 @@ std::vector<Vec3> vectors_in(const Entry& e, const char* what, std::size_t nodes
   return points_in(e.given[3], e.about(what));
 }
 
-Output output_of(const Entry& e) {
+// Functions of Python that make a material or an effect: called with the interpreter lock. isochor.Error is
+// how one says that there is none of a value; what else it raises ends the call, and is raised by it.
+class Makers {
+ public:
+  std::function<Result<std::string>(double)> function(py::object make) {
+    // Copies are made and dropped without the lock.
+    const auto kept = std::make_shared<py::object>(std::move(make));
+    functions_.push_back(kept);
+    return [this, kept](double value) -> Result<std::string> {
+      return called([&] { return (*kept)(value).cast<std::string>(); });
+    };
+  }
+  // Of positions, shape (n, 3): a number, and how it changes with each of them, of the same shape.
+  Output::Function of_positions(py::object make) {
+    const auto kept = std::make_shared<py::object>(std::move(make));
+    functions_.push_back(kept);
+    return [this, kept](std::span<const Vec3> x, std::span<Vec3> gradient) -> Result<double> {
+      return called([&] {
+        std::vector<double> numbers;
+        for (const Vec3& v : x) numbers.insert(numbers.end(), {v.x, v.y, v.z});
+        const py::array where = array_of(std::move(numbers), 3);
+        const auto made = (*kept)(where).cast<py::tuple>();
+        const std::vector<Vec3> by = points_in(made[1], "the gradient of the function");
+        if (by.size() != gradient.size())
+          throw Refused("its gradient has " + std::to_string(by.size()) + " vectors for " +
+                        std::to_string(gradient.size()) + " nodes");
+        std::copy(by.begin(), by.end(), gradient.begin());
+        return made[0].cast<double>();
+      });
+    };
+  }
+  void raise_again() {
+    if (raised_) throw py::error_already_set(*raised_);
+  }
+
+ private:
+  template <class Call>
+  auto called(const Call& call) -> Result<decltype(call())> {
+    if (raised_) return Error{"a function raised an exception"};
+    const py::gil_scoped_acquire locked;
+    try {
+      return call();
+    } catch (const Refused& refused) {
+      return Error{refused.what()};
+    } catch (py::error_already_set& error) {
+      if (error.matches(py::module_::import("isochor.errors").attr("Error")))
+        return Error{py::str(error.value()).cast<std::string>()};
+      raised_.emplace(error);
+      return Error{"a function raised an exception"};
+    }
+  }
+
+  std::vector<std::shared_ptr<py::object>> functions_;
+  std::optional<py::error_already_set> raised_;
+};
+
+Output output_of(const Entry& e, Makers& makers) {
   const std::string kind = e.kind();
   if (kind == "elastic_energy") return Output::elastic_energy();
+  if (kind == "energy") return Output::energy(e.given[2].cast<std::string>());
   if (kind == "gauge") return Output::gauge(e.id<EffectId>(), e.given[2].cast<std::string>());
   if (kind == "reaction") {
     return Output::reaction(e.id<EffectId>(), vector_in(e.given[2], e.about("force")),
                             vector_in(e.given[3], e.about("moment")));
   }
+  if (kind == "effect_force") {
+    const auto effect = e.id<EffectId>();
+    const Entry of_body{e.world, py::make_tuple(kind, e.given[2]), e.who};
+    return Output::effect_force(effect, of_body.id<BodyId>(), vector_in(e.given[3], e.about("direction")));
+  }
   const auto body = e.id<BodyId>();
+  if (kind == "stress") return Output::stress(body, e.given[2].cast<Index>(), e.given[3].cast<std::string>());
+  if (kind == "of_positions")
+    return Output::of_positions(body, makers.of_positions(py::reinterpret_borrow<py::object>(e.given[2])));
   if (kind == "material_point") {
     return Output::material_point(body, vector_in(e.given[2], e.about("point")),
                                   vector_in(e.given[3], e.about("direction")));
@@ -76,38 +141,10 @@ Output output_of(const Entry& e) {
     return Output::distance(body, std::move(nodes), std::move(targets));
   }
   std::vector<Vec3> weights = vectors_in(e, "weights", nodes.size());
+  if (kind == "square")
+    return Output::square(body, std::move(nodes), std::move(weights), e.given[5].cast<double>());
   return Output::positions(body, std::move(nodes), std::move(weights));
 }
-
-// Functions of Python that make a material or an effect: called with the interpreter lock. isochor.Error is
-// how one says that there is none of a value; what else it raises ends the call, and is raised by it.
-class Makers {
- public:
-  std::function<Result<std::string>(double)> function(py::object make) {
-    // Copies are made and dropped without the lock.
-    const auto kept = std::make_shared<py::object>(std::move(make));
-    functions_.push_back(kept);
-    return [this, kept](double value) -> Result<std::string> {
-      if (raised_) return Error{"a function raised an exception"};
-      const py::gil_scoped_acquire locked;
-      try {
-        return (*kept)(value).cast<std::string>();
-      } catch (py::error_already_set& error) {
-        if (error.matches(py::module_::import("isochor.errors").attr("Error")))
-          return Error{py::str(error.value()).cast<std::string>()};
-        raised_.emplace(error);
-        return Error{"a function raised an exception"};
-      }
-    };
-  }
-  void raise_again() {
-    if (raised_) throw py::error_already_set(*raised_);
-  }
-
- private:
-  std::vector<std::shared_ptr<py::object>> functions_;
-  std::optional<py::error_already_set> raised_;
-};
 
 // Of (..., path, keys) or (..., value, function).
 NumberInKeys number_of(const Entry& e, Makers& makers) {
@@ -134,6 +171,12 @@ Parameter parameter_of(const Entry& e, Makers& makers) {
   if (kind == "amount_of") return Parameter::amount_of(e.id<EffectId>());
   if (kind == "gravity") return Parameter::gravity(vector_in(e.given[3], e.about("direction")));
   if (kind == "constant_of") return constant_of(e, makers);
+  if (kind == "curve_point") {
+    Curve curve;
+    for (const auto& [t, value] : e.given[3].cast<std::vector<std::pair<double, double>>>())
+      curve.points.push_back({t, value});
+    return Parameter::curve_point(e.id<EffectId>(), std::move(curve), e.given[4].cast<Index>());
+  }
   const auto body = e.id<BodyId>();
   if (kind == "force_at") {
     return Parameter::force_at(body, vector_in(e.given[3], e.about("point")),
@@ -169,7 +212,7 @@ GradientQuery query_of(HostedWorld& world, const py::list& outputs, const py::li
                        const py::list& places, Makers& makers) {
   GradientQuery query;
   for (std::size_t j = 0; j < outputs.size(); ++j)
-    query.outputs.push_back(output_of(entry_of(world, outputs[j], "gradients", "outputs", j)));
+    query.outputs.push_back(output_of(entry_of(world, outputs[j], "gradients", "outputs", j), makers));
   query.parameters = parameters_of(world, "gradients", parameters, places, makers);
   return query;
 }
@@ -186,7 +229,7 @@ TrajectoryQuery trajectory_of(HostedWorld& world, std::vector<double> steps, con
     for (const py::handle& term : outputs[j].cast<py::list>()) {
       const auto pair = term.cast<py::tuple>();
       output.terms.push_back(
-          {pair[0].cast<Index>(), output_of(entry_of(world, pair[1], kTrajectory, "outputs", j))});
+          {pair[0].cast<Index>(), output_of(entry_of(world, pair[1], kTrajectory, "outputs", j), makers)});
     }
   }
   query.parameters = parameters_of(world, kTrajectory, parameters, places, makers);
@@ -210,6 +253,9 @@ py::dict dict_of(Gradients&& told, const std::vector<Index>& numbers_of) {
   out["note"] = told.note;
   out["undecided"] = undecided;
   out["adjoint"] = told.adjoint;
+  out["kept_states"] = told.kept_states;
+  out["steps_again"] = told.steps_again;
+  out["state_bytes"] = told.state_bytes;
   return out;
 }
 
