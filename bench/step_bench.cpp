@@ -143,9 +143,10 @@ void bench_robot(const std::string& file, Element element, int threads, int step
   std::printf("dynamic, %s, %s: %d tets, h = 1/60 s, nu = 0.5\n", file.substr(slash + 1).c_str(),
               name(element), cells);
   std::printf(
-      "    %.1f steps/s (median step %.1f ms), %d iterations and %d corrections in %d steps, hash %016llx\n",
-      t.steps / t.s.total, 1e3 * median, t.iterations, t.corrections, t.steps,
-      static_cast<unsigned long long>(b.world.state_hash()));
+      "    %.1f steps/s (median step %.1f ms, worst %.1f times that), %d iterations and %d corrections in %d "
+      "steps, hash %016llx\n",
+      t.steps / t.s.total, 1e3 * median, median > 0 ? t.step_seconds.back() / median : 0, t.iterations,
+      t.corrections, t.steps, static_cast<unsigned long long>(b.world.state_hash()));
   print_stages(t);
 }
 

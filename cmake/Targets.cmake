@@ -88,7 +88,7 @@ endif()
 isochor_module(mesh_files ${_mesh_files})
 target_link_libraries(isochor_mesh_files PUBLIC isochor_mesh PRIVATE ${_vtu_libraries})
 
-isochor_sources(_solvers engine/solvers engine/solvers/front engine/solvers/iterative engine/solvers/foreign)
+isochor_sources(_solvers engine/solvers engine/solvers/front engine/solvers/iterative engine/solvers/two_level engine/solvers/foreign)
 isochor_module(solvers ${_solvers})
 target_link_libraries(isochor_solvers PUBLIC isochor_base PRIVATE $<BUILD_INTERFACE:Eigen3::Eigen> Threads::Threads ${CMAKE_DL_LIBS})
 foreach(backend MUMPS CHOLMOD METIS)

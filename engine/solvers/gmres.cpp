@@ -37,7 +37,7 @@ void Gmres::set(double factor, std::span<const double> v, std::span<double> w) c
 
 void Gmres::begin(std::span<const double> b) {
   start_ = left_ = std::sqrt(dot(b, b));
-  exhausted_ = false;
+  exhausted_ = odd_ = false;
   std::fill(right_.begin(), right_.end(), 0.0);
   right_[0] = start_;
   set(start_ > 0 ? 1 / start_ : 0, b, basis(0));
@@ -67,6 +67,7 @@ bool Gmres::extend(int k) {
   }
   const double a = h(k, k), length = std::hypot(a, norm);
   if (!(length > 0)) return false;
+  odd_ = a < 0;  // rotations and the pivots before have a positive determinant
   cosine_[at(k)] = a / length;
   sine_[at(k)] = norm / length;
   h(k, k) = length;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -20,9 +21,14 @@ class Gmres {
 
   void set_loop(const RowLoop& loop) { loop_ = loop; }
 
+  int room() const { return most_; }
+  double norm(std::span<const double> v) { return std::sqrt(dot(v, v)); }
   // Of one solve: residual of x = 0, in the Euclidean norm, and what is left of it.
   double start_norm() const { return start_; }
   double left() const { return left_; }
+  // Whether A M^-1, as far as the directions saw it, has an odd number of negative eigenvalues: the sign of
+  // the determinant of the Hessenberg matrix.
+  bool odd() const { return odd_; }
 
   // From x = 0 until the residual is `tolerance` of the right-hand side, or for as many directions as there
   // is room for. apply(v, w): w = A v; precondition(v): v := M^-1 v in place, false when it cannot. Returns
@@ -65,6 +71,7 @@ class Gmres {
   RowLoop loop_;
   BlockedDot dot_;
   double start_ = 0, left_ = 0;
+  bool odd_ = false;
   bool exhausted_ = false;  // the space does not grow any more: what is there is exact
   std::vector<double> basis_, direction_, hessenberg_, cosine_, sine_, right_;
 };

@@ -35,6 +35,27 @@ class SaddleMatrix {
   Index row_nodes(Index row) const {
     return static_cast<Index>(row_start_[at(row) + 1] - row_start_[at(row)]);
   }
+  // Calls visit(node, the three numbers of the gradient) for the nodes of a row, and visit(row, numbers) for
+  // the rows of a node; both ascending.
+  template <class Visit>
+  void for_gradient(Index row, const Visit& visit) const {
+    for (auto e = static_cast<std::size_t>(row_start_[at(row)]);
+         e < static_cast<std::size_t>(row_start_[at(row) + 1]); ++e)
+      visit(row_node_[e], gradient_.data() + 3 * e);
+  }
+  template <class Visit>
+  void for_rows_of(Index node, const Visit& visit) const {
+    for (auto e = static_cast<std::size_t>(node_start_[at(node)]);
+         e < static_cast<std::size_t>(node_start_[at(node) + 1]); ++e)
+      visit(node_row_[e], gradient_.data() + 3 * node_block_[e]);
+  }
+  // Calls visit(column, entry) for what a row has of the lower right block, with the sign of the matrix.
+  template <class Visit>
+  void for_compliance(Index row, const Visit& visit) const {
+    for (auto e = static_cast<std::size_t>(compliance_start_[at(row)]);
+         e < static_cast<std::size_t>(compliance_start_[at(row) + 1]); ++e)
+      visit(compliance_column_[e], compliance_[e]);
+  }
   // The gradient of a row, over the displacements.
   void row_gradient(Index row, std::span<double> displacements) const;
   std::size_t bytes() const;

@@ -5,6 +5,7 @@
 #include "engine/solve/dual_ascent.h"
 #include "engine/solve/newton/unsymmetric_newton.h"
 #include "engine/solve/position_based.h"
+#include "engine/solvers/two_level/two_level_solver.h"
 #include "engine/step/time_scheme.h"
 
 namespace isochor {
@@ -57,11 +58,13 @@ Result<Methods::Renewed> Methods::renew(SystemParts parts) {
     return Error{
         "world: a scene that is shared out over ranks does not change yet; make another world of it"};
   if (std::string why = incompatible(parts, options_); !why.empty()) return Error{std::move(why)};
-  const bool prefer_iterative = large(parts), same_solver = prefer_iterative == large(system_->parts());
+  const bool prefer_iterative = large(parts);
+  bool same_solver = prefer_iterative == large(system_->parts());
   auto compiled = compile_system(std::move(parts), system_.get());
   if (!compiled) return compiled.failure();
   std::shared_ptr<System> system = std::move(compiled).value();
   const bool same = system->shares_tables(*system_);
+  same_solver = same_solver && may_have_two_levels(*system) == may_have_two_levels(*system_);
   // Methods that sort rows by their numbers are made anew.
   if (same && !climbs(options_.method) && options_.method != Method::position_based) {
     // All who work with the system look at this one.
@@ -140,18 +143,31 @@ Result<void> Methods::make(SystemParts parts, bool keep_solvers, const System* l
   return make_for(std::move(compiled).value(), prefer_iterative, keep_solvers);
 }
 
-std::unique_ptr<LinearSolver> Methods::make_solver(bool prefer_iterative) const {
+// Two levels in place of factors know no bounds and no lag, whose corrections want what factors do in a few
+// directions; no rows around the matrix, each of which is solved to the end; and no paths.
+bool Methods::may_have_two_levels(const System& system) const {
+  const TreatedRows& rows = system.treated();
+  return options_.solver == Solver::automatic && !ranks_ && !options_.scheme->follows_paths() &&
+         !system.couples() && !system.has_lag() && !system.has_bounds() && !system.renews_stencils() &&
+         rows.bordered.empty() && rows.dual.empty();
+}
+
+std::unique_ptr<LinearSolver> Methods::make_solver(const System& system, bool prefer_iterative) const {
   if (ranks_) return ranks_->linear_solver(options_.solver, prefer_iterative);
   SolverWishes wishes;
   wishes.prefer_iterative = prefer_iterative;
   // Next to a limit point the sign of a vanishing eigenvalue counts.
   wishes.single_precision = !options_.scheme->follows_paths();
-  return make_linear_solver(options_.solver, wishes);
+  auto solver = make_linear_solver(options_.solver, wishes);
+  if (!solver || !may_have_two_levels(system)) return solver;
+  TwoLevelChoice choice;
+  choice.confirm = !options_.scheme->has_inertia();
+  return make_two_level_solver(std::move(solver), choice);
 }
 
 Result<void> Methods::make_for(std::shared_ptr<System> system, bool prefer_iterative, bool keep_solvers) {
   std::unique_ptr<LinearSolver> solver, unsymmetric;
-  if (!keep_solvers) solver = make_solver(prefer_iterative && !system->couples());
+  if (!keep_solvers) solver = make_solver(*system, prefer_iterative && !system->couples());
   if (!keep_solvers && !solver)
     return Error{"world: this build does not have the linear solver that is asked for"};
   std::string counts = count_rows(*system);
@@ -179,7 +195,7 @@ void Methods::drop() {
 
 void Methods::remake() {
   const bool prefer_iterative = large(system_->parts()) && !system_->couples();
-  auto solver = make_solver(prefer_iterative);
+  auto solver = make_solver(*system_, prefer_iterative);
   std::unique_ptr<LinearSolver> unsymmetric;
   if (system_->couples()) unsymmetric = make_unsymmetric_solver(options_.solver);
   list_stand_ins();

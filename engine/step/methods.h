@@ -51,7 +51,8 @@ class Methods {
   Result<void> make_for(std::shared_ptr<System> system, bool prefer_iterative, bool keep_solvers);
   void list_stand_ins();
   Result<std::shared_ptr<System>> compile_system(SystemParts parts, const System* like) const;
-  std::unique_ptr<LinearSolver> make_solver(bool prefer_iterative) const;
+  std::unique_ptr<LinearSolver> make_solver(const System& system, bool prefer_iterative) const;
+  bool may_have_two_levels(const System& system) const;
   std::unique_ptr<LinearSolver> release_solver(std::unique_ptr<LinearSolver>& unsymmetric);
   void make_chosen(std::unique_ptr<LinearSolver> solver, std::unique_ptr<LinearSolver> unsymmetric);
   bool large(const SystemParts& parts) const;

@@ -6,6 +6,7 @@
 #include <new>
 #include <utility>
 
+#include "engine/solvers/gmres_rounds.h"
 #include "engine/solvers/pattern_check.h"
 
 namespace isochor {
@@ -200,34 +201,16 @@ bool IterativeSolver::solve_triangular(std::span<double> v) {
 }
 
 // From x = 0, with the upper triangle of blocks for a preconditioner (Murphy, Golub & Wathen 2000), which
-// takes a fraction of the iterations of the diagonal ones but has no short recurrence. True when it arrived;
-// otherwise x is what is worth going on from.
+// takes a fraction of the iterations of the diagonal ones but has no short recurrence.
 bool IterativeSolver::iterate_on_triangle(double wanted, std::span<double> x, int& iterations) {
-  constexpr double slow = 0.1;  // what a round leaves where another would not do
-  const double start = std::sqrt(dot(b_, b_));
-  std::copy(b_.begin(), b_.end(), residual_.begin());
-  double now = start;
-  for (int round = 0; round < most_beginnings && iterations + most_directions <= options_.max_iterations;
-       ++round) {
-    const int taken = gmres_->solve(
-        residual_, lanczos_.w0, wanted * start / now,
-        [&](std::span<const double> v, std::span<double> w) {
-          matrix_.multiply(loop_, multigrid_.matrix(), v, w);
-        },
-        [&](std::span<double> v) { return solve_triangular(v); });
-    if (taken < 0) return false;
-    iterations += taken;
-    for (std::size_t i = 0; i < x.size(); ++i) lanczos_.w0[i] += x[i];
-    matrix_.multiply(loop_, multigrid_.matrix(), lanczos_.w0, residual_);
-    for (std::size_t i = 0; i < x.size(); ++i) residual_[i] = b_[i] - residual_[i];
-    const double before = std::exchange(now, std::sqrt(dot(residual_, residual_)));
-    if (!(now < before)) return false;
-    std::copy(lanczos_.w0.begin(), lanczos_.w0.end(), x.begin());
-    // The method's own residual drifts from this one in the last digits.
-    if (now <= 1.01 * wanted * start) return true;
-    if (now > slow * before) return false;
-  }
-  return false;
+  const GmresRounds rounds{
+      .wanted = wanted, .most = most_beginnings, .most_directions = options_.max_iterations};
+  return solve_in_rounds(
+      *gmres_, rounds, {b_, x, residual_, lanczos_.w0},
+      [&](std::span<const double> v, std::span<double> w) {
+        matrix_.multiply(loop_, multigrid_.matrix(), v, w);
+      },
+      [&](std::span<double> v) { return solve_triangular(v); }, iterations);
 }
 
 // Paige & Saunders 1975 with a preconditioner, from residual_ and lanczos_.z1 = B residual_. False when the

@@ -107,7 +107,7 @@ void Multigrid::factor(const RowLoop& loop, std::span<const double> modes, doubl
   std::copy(modes.begin(), modes.end(), levels_.front().modes.begin());
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
-    invert_diagonal(loop, level);
+    invert_diagonal_blocks(loop, level.a, level.diagonal_inverse);
     level.bound = caution * estimate_bound(loop, level);
     if (l + 1 == levels_.size()) break;
     prolongate_tentative(loop, level, levels_[l + 1]);

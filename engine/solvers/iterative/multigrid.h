@@ -65,7 +65,6 @@ class Multigrid {
   };
 
   void build_pattern(Level& level, Level& coarse);
-  void invert_diagonal(const RowLoop& loop, Level& level);
   double estimate_bound(const RowLoop& loop, Level& level);
   void prolongate_tentative(const RowLoop& loop, Level& level, Level& coarse);
   void smooth_prolongation(const RowLoop& loop, Level& level);

@@ -21,6 +21,10 @@ void with_size(int size, const Body& body) {
     body(std::integral_constant<int, 6>());
 }
 
+// Inverse diagonal blocks of a matrix, their eigenvalues made positive. Coordinates that do not exist are
+// where an eigenvalue is zero; any inverse is right for them.
+void invert_diagonal_blocks(const RowLoop& loop, const BlockMatrix& matrix, std::span<double> inverse);
+
 // A symmetric matrix becomes the inverse with its eigenvalues made positive.
 void invert_magnitudes(std::span<double> matrix, std::size_t size);
 
