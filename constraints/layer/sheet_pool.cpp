@@ -168,7 +168,9 @@ void SheetPool::add_fibers(std::size_t point, const PlaneStrain& e, const std::a
                            double thickness, bool hessian, PlaneResponse& r) const {
   for (std::size_t f = 0; f < fibers_.size(); ++f) {
     const auto& [u, v] = fibers_[f][point];
-    const double x = (U[1] * u - U[2] * v) / det(U), y = (U[0] * v - U[2] * u) / det(U), own = x * x + y * y;
+    const double x = (U[1] * u - U[2] * v) / det(U), y = (U[0] * v - U[2] * u) / det(U);
+    // Exactly at rest where nothing is stretched there.
+    const double own = stretched_.empty() ? 1 : x * x + y * y;
     // Strains first, which keep the digits of what is nearly at rest.
     const double C = u * u * e.e11 + v * v * e.e22 + u * v * e.g;
     const FiberResponse w = isochor::respond(sheet_.fibers[f], (2 * C + (1 - own)) / own);
