@@ -14,7 +14,7 @@ namespace {
 // The function of a face is -c(held) . x with c_a the integral of N_a times the load over its area as it is
 // held, so that with the amount as multiplier its forces are amount * c. Such a load has no potential: what
 // the area and its normal add is held where the iteration began.
-class VaryingLoadPool final : public StencilPool, public LaggedStencils {
+class VaryingLoadPool final : public StencilPool, public LaggedStencils, public MovingStencils {
  public:
   VaryingLoadPool(std::string name, LoadedFaces loaded, bool couples)
       : name_(std::move(name)),
@@ -27,7 +27,10 @@ class VaryingLoadPool final : public StencilPool, public LaggedStencils {
   }
   std::string_view name() const override { return name_; }
   StencilShape shape() const override { return {.functions = 1}; }
-  StencilFacets facets() const override { return {.lagged = this}; }
+  StencilFacets facets() const override {
+    return {.lagged = this, .moving = loaded_.varies_in_time() ? this : nullptr};
+  }
+  bool moves(double t0, double t1) const override { return loaded_.varies_in_time() && t0 != t1; }
   bool couples() const override { return couples_; }
 
   void evaluate(const StencilRequest& request, const StencilSlots& slots) const override {
