@@ -86,6 +86,14 @@ struct FitArguments {
   bool relative = false, json = false, quiet = false;
 };
 
+struct PronyArguments {
+  std::string file, folder;  // folder empty: out/fit/NAME
+  std::string time, value;   // columns
+  int terms = 3;
+  double ramp = 0;  // [s]
+  bool json = false, quiet = false;
+};
+
 struct ViewArguments {
   std::string folder;
   bool remake = false;         // from the frames, even where there is a page
@@ -122,6 +130,7 @@ int view(const ViewArguments& arguments);
 int study(const StudyArguments& arguments);
 int fit_laws(const FitArguments& arguments);
 int fit_constants(const FitArguments& arguments);
+int fit_prony(const PronyArguments& arguments);
 
 struct DriveArguments {
   std::string scene, targets, folder;           // folder empty: out/drive/NAME

@@ -143,6 +143,23 @@ void add_fit(CLI::App& top, app::FitArguments& a) {
   c->add_flag("--quiet", a.quiet, "Print errors only");
 }
 
+void add_prony(CLI::App& top, app::PronyArguments& a) {
+  CLI::App* c = top.add_subcommand("fit-prony", "Find terms of a Prony series from a measured relaxation");
+  c->add_option("data", a.file, "CSV file with time [s] and stress, force or modulus in any unit")
+      ->required();
+  c->add_option("--terms", a.terms, "Most terms; fits of fewer are told too")
+      ->check(CLI::Range(1, 8))
+      ->capture_default_str();
+  c->add_option("--ramp", a.ramp, "How long the strain rose, steadily from time 0; default 0: at once")
+      ->type_name("SECONDS")
+      ->check(not_negative());
+  c->add_option("--time", a.time, "Column of the time; default by its name")->type_name("NAME");
+  c->add_option("--value", a.value, "Column of the stress; default by its name")->type_name("NAME");
+  c->add_option("--out", a.folder, "Folder of prony.json; default out/fit/NAME")->type_name("DIR");
+  c->add_flag("--json", a.json, "Print prony.json");
+  c->add_flag("--quiet", a.quiet, "Print errors only");
+}
+
 void add_drive(CLI::App& top, app::DriveArguments& a) {
   CLI::App* c = top.add_subcommand("drive", "Find amounts that bring probes of a scene to targets");
   c->add_option("scene", a.scene, "Name of a scene (see `isochor list`) or a file that ends in .json")
@@ -275,6 +292,7 @@ int dispatch(int argc, char** argv) {
   app::StudyArguments study;
   app::ViewArguments view;
   app::FitArguments fit;
+  app::PronyArguments prony;
   app::LiveArguments live;
   app::DriveArguments drive;
   app::DesignArguments design;
@@ -289,6 +307,7 @@ int dispatch(int argc, char** argv) {
   add_view(top, view);
   add_live(top, live);
   add_fit(top, fit);
+  add_prony(top, prony);
   add_drive(top, drive);
   add_design(top, design);
   CLI::App* check =
@@ -325,6 +344,7 @@ int dispatch(int argc, char** argv) {
     return app::keys(schema ? app::KeysAs::schema : tables ? app::KeysAs::tables : app::KeysAs::lines);
   }
   if (version->parsed()) return app::version(json);
+  if (top.got_subcommand("fit-prony")) return app::fit_prony(prony);
   if (top.got_subcommand("fit")) return fit.scenes.empty() ? app::fit_laws(fit) : app::fit_constants(fit);
   if (top.got_subcommand("drive")) return app::drive_scene(drive);
   if (top.got_subcommand("design")) return app::design_scene(design);

@@ -47,6 +47,7 @@ Result<void> Simulation::start() {
   auto copy = built_->world.clone();
   if (!copy) return copy.failure();
   beginning_.emplace(std::move(copy).value());
+  scheduled_at_first_ = built_->scheduled;
   recorder_ = std::make_unique<StepRecorder>(scene_, *built_);
   shown_.scene = scene_.name;
   shown_.threads = options_.threads;
@@ -181,6 +182,7 @@ Result<void> Simulation::begin_again() {
   if (!fresh) return fresh.failure();
   const auto ended = end_recording();
   built_->world = std::move(fresh).value();
+  built_->scheduled = scheduled_at_first_;
   hand_.forget();
   dials_->forget();
   poses_->forget(*built_);
@@ -196,9 +198,16 @@ bool Simulation::settled() const {
   return built_->world.time() >= scene_.analysis.duration - 0.5 * plan_.h;
 }
 
+Result<void> Simulation::keep_schedule() {
+  if (built_->scheduled.empty()) return {};
+  const auto changed = follow_schedule(*built_, built_->world.time() + 0.5 * plan_.h);
+  return changed ? Result<void>() : changed.failure();
+}
+
 StepEnd Simulation::advance() {
   auto prepared = hand_.prepare(*built_);
   if (prepared) prepared = poses_->prepare(*built_, plan_.h);
+  if (prepared) prepared = keep_schedule();
   if (!prepared) {
     message_ = prepared.error();
     failed_ = true;

@@ -87,6 +87,7 @@ class Simulation {
   Result<void> end_recording();
   StepRecord look() const;
   void list_measures();
+  Result<void> keep_schedule();
   StepEnd told(const StepReport& report, double before, bool too_long);
 
   SceneDef scene_;
@@ -94,6 +95,7 @@ class Simulation {
   StepPlan plan_;
   std::optional<BuiltScene> built_;
   std::optional<World> beginning_;  // of which every beginning is a copy
+  std::vector<ScheduledEffect> scheduled_at_first_;
   std::optional<PageShape> shape_;
   std::optional<Poses> poses_;
   std::unique_ptr<Dials> dials_;

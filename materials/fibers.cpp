@@ -7,10 +7,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <limits>
 
 #include "engine/base/text.h"
+#include "engine/elements/fiber_law.h"
 #include "engine/elements/material_model.h"
 #include "isochor/materials.h"
 #include "materials/wrapped_model.h"
@@ -41,59 +40,6 @@ struct Family {
   std::vector<Structure> H;  // one for all, or one an element
   const Structure& at_element(Index e) const { return H[H.size() == 1 ? 0 : at(e)]; }
 };
-
-struct FiberResponse {
-  double psi, first, second;  // and its derivatives in E
-};
-
-constexpr FiberResponse kNone{std::numeric_limits<double>::infinity(), 0, 0};
-
-// Ei(x) for x > 0.
-double exponential_integral(double x) {
-#ifdef __cpp_lib_math_special_functions
-  return std::expint(x);
-#else
-  // libc++ has no special functions. All terms are positive: nothing cancels.
-  double sum = 0, term = 1;
-  for (int n = 1; n < 2000; ++n) {
-    term *= x / n;
-    sum += term / n;
-    if (n > x && term < 1e-17 * sum) break;
-  }
-  return 0.57721566490153286 + std::log(x) + sum;
-#endif
-}
-
-// T = s dpsi/ds over the stretch s > 1.
-FiberResponse toe(const Family& f, double E) {
-  const double s = std::sqrt(1 + E), end = std::min(s, f.straight_stretch);
-  // The integral of k1 (exp(k2 (s - 1)) - 1)/s by the exponential integral.
-  const double shrink = std::exp(-f.k2);
-  double psi =
-      f.k1 * (shrink * (exponential_integral(f.k2 * end) - exponential_integral(f.k2)) - std::log(end));
-  double T = f.k1 * std::expm1(f.k2 * (end - 1)), slope = f.k1 * f.k2 * std::exp(f.k2 * (end - 1));
-  if (s > end) {
-    const double offset = T - f.straight_modulus * end;
-    psi += f.straight_modulus * (s - end) + offset * std::log(s / end);
-    T = f.straight_modulus * s + offset;
-    slope = f.straight_modulus;
-  }
-  if (!std::isfinite(psi)) return kNone;
-  const double s2 = s * s;
-  return {psi, T / (2 * s2), (slope * s - 2 * T) / (4 * s2 * s2)};
-}
-
-FiberResponse respond(const Family& f, double E) {
-  if (!(E > 0)) return {0, 0, 0};
-  if (f.law == FiberLaw::toe) return toe(f, E);
-  const double b = f.exponent, power = b == 2 ? E : std::pow(E, b - 1);  // E^(b - 1)
-  const double x = f.k2 * power * E;
-  if (x > 690) return kNone;  // beyond the range of numbers
-  const double growth = std::exp(x);
-  const double psi = f.k2 > 0 ? f.k1 / (b * f.k2) * std::expm1(x) : f.k1 / b * power * E;
-  if (b == 2) return {psi, f.k1 * E * growth, f.k1 * (1 + 2 * x) * growth};
-  return {psi, f.k1 * power * growth, f.k1 * (b - 1 + b * x) * power / E * growth};
-}
 
 // E and what its derivatives at the F of one lane are made of. The arrays are filled where they are asked
 // for: d and g by isochoric families only.
@@ -182,7 +128,7 @@ class FiberMaterial final : public Material {
     for (const Family& f : families_) {
       for (int l = 0; l < kLanes; ++l) {
         const FiberStrain strain_of_lane = strain(f, points, l);
-        const FiberResponse e = strain_of_lane.J > 0 ? respond(f, strain_of_lane.E) : kNone;
+        const FiberResponse e = strain_of_lane.J > 0 ? respond(f, strain_of_lane.E) : kNoFiber;
         r.psi[l] += e.psi;
         if (want == Want::value) continue;
         if (f.isochoric) {
@@ -296,65 +242,6 @@ class FiberModel final : public WrappedModel {
   std::size_t cells_;  // of direction fields; 0: none
 };
 
-std::string text(const Vec3& v) {
-  char buffer[100];
-  std::snprintf(buffer, sizeof buffer, "(%g, %g, %g)", v.x, v.y, v.z);
-  return buffer;
-}
-
-Result<void> check_direction(const std::string& who, const Vec3& a) {
-  const double n = dot(a, a);
-  if (n > 0 && std::isfinite(n)) return {};
-  return Error{who + " = " + text(a) + " has no direction; give three numbers that are not all zero"};
-}
-
-Result<void> check_law(const std::string& who, const FiberFamily& f) {
-  if (f.law == FiberLaw::exponential) {
-    if (!(f.exponent > 1) || !std::isfinite(f.exponent)) {
-      return Error{who + "exponent = " + number(f.exponent) +
-                   "; it must be above 1, or fibers would pull with a jump (2 is usual)"};
-    }
-    if (f.straight_modulus != 0 || f.straight_stretch != 0) {
-      return Error{who + "straight_modulus = " + number(f.straight_modulus) + " Pa, straight_stretch = " +
-                   number(f.straight_stretch) + ": these are of the toe law; drop them or take that law"};
-    }
-    return {};
-  }
-  if (f.exponent != 2 || f.dispersion != 0) {
-    return Error{who + "exponent = " + number(f.exponent) + ", dispersion = " + number(f.dispersion) +
-                 ": these are of the exponential law; drop them or take that law"};
-  }
-  if (!(f.k2 > 0)) return Error{who + "k2 = " + number(f.k2) + "; it must be positive for the toe law"};
-  if (!(f.straight_modulus >= 0) || !std::isfinite(f.straight_modulus)) {
-    return Error{who + "straight_modulus = " + number(f.straight_modulus) + " Pa; it must not be negative"};
-  }
-  if (!(f.straight_stretch > 1) || !std::isfinite(f.straight_stretch)) {
-    return Error{who + "straight_stretch = " + number(f.straight_stretch) +
-                 "; the stretch at which fibers are straight must be above 1"};
-  }
-  return {};
-}
-
-Result<void> check(const std::string& who, const FiberFamily& f) {
-  if (!(f.k1 > 0) || !std::isfinite(f.k1)) {
-    return Error{who + "k1 = " + number(f.k1) + " Pa; the stiffness of fibers must be positive"};
-  }
-  if (!(f.k2 >= 0) || !std::isfinite(f.k2)) {
-    return Error{who + "k2 = " + number(f.k2) + "; it must be zero (no stiffening) or positive"};
-  }
-  if (!(f.dispersion >= 0) || !(f.dispersion <= 1.0 / 3)) {
-    return Error{who + "dispersion = " + number(f.dispersion) +
-                 "; it must lie between 0 (all fibers parallel) and 1/3 (no direction at all)"};
-  }
-  if (auto r = check_law(who, f); !r) return r;
-  if (f.directions.empty()) return check_direction(who + "direction", f.direction);
-  for (std::size_t c = 0; c < f.directions.size(); ++c) {
-    if (auto r = check_direction(who + "directions[" + std::to_string(c) + "]", f.directions[c]); !r)
-      return r;
-  }
-  return {};
-}
-
 }  // namespace
 
 Result<MaterialPtr> with_fibers(MaterialPtr matrix, const std::vector<FiberFamily>& families) {
@@ -365,7 +252,7 @@ Result<MaterialPtr> with_fibers(MaterialPtr matrix, const std::vector<FiberFamil
   for (std::size_t i = 0; i < families.size(); ++i) {
     const FiberFamily& f = families[i];
     const std::string who = "fibers[" + std::to_string(i) + "]: ";
-    if (auto r = check(who, f); !r) return r.failure();
+    if (auto r = check_fibers(who, f); !r) return r.failure();
     Family family{f.k1, f.k2, f.law, f.exponent, f.isochoric, f.straight_modulus, f.straight_stretch, {}};
     for (const Vec3& a : f.directions) family.H.push_back(structure(a, f.dispersion));
     if (f.directions.empty()) family.H.push_back(structure(f.direction, f.dispersion));

@@ -1,6 +1,7 @@
 #include "scenes/body_parts.h"
 #include "scenes/effects/kind.h"
 #include "scenes/run/step_measures.h"
+#include "scenes/schedule.h"
 
 namespace isochor {
 
@@ -23,9 +24,15 @@ Result<void> add_bodies(const SceneDef& scene, const BuildOptions& options, Buil
 Result<void> add_effects(const SceneDef& scene, const BuildOptions& options, BuiltScene& built) {
   EffectAdder adder(scene, [&](const EffectKind& kind, EffectPtr effect) -> Result<void> {
     if (options.parts) options.parts->effects.push_back(effect);
-    auto id = built.world.add(std::move(effect));
+    auto id = built.world.add(effect);
     if (!id) return id.failure();
-    built.effects[&kind].push_back(id.value());
+    std::vector<EffectId>& ids = built.effects[&kind];
+    ids.push_back(id.value());
+    if (scene.schedule.empty() || ids.size() > kind.size(scene)) return {};
+    const std::string& name = kind.name(scene, ids.size() - 1);
+    if (!is_scheduled(scene, name)) return {};
+    built.scheduled.push_back(scheduled_effect(scene, name, std::move(effect)));
+    built.scheduled.back().id = id.value();
     return {};
   });
   for (const EffectKind* kind : kinds_by_phase()) {
@@ -87,7 +94,9 @@ Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options) {
   BuiltScene built{std::move(world).value()};
   if (auto r = add_bodies(scene, options, built); !r) return r.failure();
   if (auto r = add_effects(scene, options, built); !r) return r.failure();
+  if (auto r = follow_schedule(built, 0.5 * plan_steps(scene.analysis).h); !r) return r.failure();
   if (auto r = built.world.compile(); !r) return r.failure();
+  if (auto r = rehearse(scene, built); !r) return r.failure();
   if (auto r = check_watched(scene, built); !r) return r.failure();
   if (auto r = set_motion(scene, built); !r) return r.failure();
   return built;

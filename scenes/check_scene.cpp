@@ -155,6 +155,58 @@ Result<void> check_metrics(const SceneDef& s) {
   return {};
 }
 
+// An effect of the scene, or why it can have no schedule.
+Result<void> check_scheduled(const SceneDef& s, const std::string& where, const std::string& name) {
+  std::string known;
+  for (const EffectKind* kind : effect_kinds) {
+    const bool always = kind == &volumes_kind || kind == &rigid_bodies_kind;
+    for (std::size_t i = 0; i < kind->size(s); ++i) {
+      if (kind->name(s, i) != name) {
+        if (!always) known += (known.empty() ? "\"" : ", \"") + kind->name(s, i) + "\"";
+        continue;
+      }
+      if (!always) return {};
+      return Error{where + ": \"" + name + "\" is one of " + kind->key +
+                   ", which are there from the beginning to the end; take it out of the schedule"};
+    }
+  }
+  return Error{where + ": there is no effect \"" + name + "\"; the scene has " +
+               (known.empty() ? "none" : known)};
+}
+
+Result<void> check_schedule(const SceneDef& s) {
+  if (s.schedule.empty()) return {};
+  if (s.analysis.path_step) {
+    return Error{
+        "schedule: along a path (analysis.path_step) the load factor goes to and fro, so that nothing begins "
+        "or "
+        "ends at a time; leave one of the two out"};
+  }
+  const StepPlan plan = plan_steps(s.analysis);
+  const auto ends_step = [&](double t) {
+    const double steps = t / plan.h;
+    return std::abs(steps - std::round(steps)) < 1e-6;
+  };
+  for (std::size_t i = 0; i < s.schedule.size(); ++i) {
+    const ScheduleDef& d = s.schedule[i];
+    const std::string where = place("schedule", i);
+    if (d.effects.empty()) return Error{where + ".effects is empty; name those that begin or end"};
+    for (const std::string& name : d.effects) {
+      if (auto r = check_scheduled(s, where + ".effects", name); !r) return r;
+    }
+    if (!(d.from >= 0) || !std::isfinite(d.from) || (d.to && !(*d.to > d.from))) {
+      return Error{where + ": from = " + number(d.from) + (d.to ? ", to = " + number(*d.to) : "") +
+                   "; from is 0 or later, and to comes after it"};
+    }
+    for (const auto& [key, t] : {std::pair(".from", d.from), {".to", d.to.value_or(0)}}) {
+      if (ends_step(t)) continue;
+      return Error{where + key + " = " + number(t) + " is not the end of a step; steps end at multiples of " +
+                   number(plan.h) + ", choose analysis.steps so that they do there"};
+    }
+  }
+  return {};
+}
+
 Result<void> check_bodies(const SceneDef& s) {
   if (s.bodies.empty()) return Error{"bodies is empty; a scene needs at least one body"};
   for (std::size_t b = 0; b < s.bodies.size(); ++b) {
@@ -202,6 +254,7 @@ Result<void> check_scene(const SceneDef& s) {
   if (auto r = check_all_names(s); !r) return r;
   if (auto r = check_analysis("analysis", s.analysis); !r) return r;
   if (auto r = check_all_curves(s); !r) return r;
+  if (auto r = check_schedule(s); !r) return r;
   if (auto r = check_outputs(s.outputs); !r) return r;
   return check_metrics(s);
 }

@@ -5,6 +5,7 @@
 #include "scenes/library.h"
 #include "scenes/probes.h"
 #include "scenes/scene_file.h"
+#include "scenes/schedule.h"
 
 namespace isochor {
 
@@ -55,6 +56,7 @@ std::optional<double> Scene::path_step() const {
 
 Result<SceneWorld> Scene::world(int threads) const {
   const SceneDef& scene = data_->scene;
+  if (auto r = no_schedule(scene, "a world of a scene"); !r) return r.failure();
   BuildOptions options;
   options.threads = threads;
   auto made = build(scene, options);

@@ -39,6 +39,7 @@ constexpr auto kScenes = std::to_array<LibraryScene>({
     {"colliding_balls", "Two incompressible balls that collide off center", colliding_balls},
     {"thin_strip", "Thin strip bent by a force at its end", thin_strip},
     {"paper_strip", "Soft strip that swells on a sheet of paper and curls", paper_strip},
+    {"elbow", "Limb about two bones that bends by a right angle", elbow},
 });
 
 }  // namespace

@@ -57,5 +57,6 @@ SceneDef bellows(const SceneVariant& variant = {});
 SceneDef colliding_balls(const SceneVariant& variant = {});
 SceneDef thin_strip(const SceneVariant& variant = {});
 SceneDef paper_strip(const SceneVariant& variant = {});
+SceneDef elbow(const SceneVariant& variant = {});
 
 }  // namespace isochor

@@ -159,7 +159,8 @@ Result<void> refine(const SceneBody& body, const std::string& folder, Mesh& mesh
     auto finer = refine_mesh(mesh, body.refine);
     if (!finer) return Error{"refine: " + finer.error(), finer.failure().kind};
     mesh = std::move(finer).value();
-    for (Index c = 0; c < mesh.cell_count(); ++c) parent.push_back(c >> (3 * body.refine));
+    const int cuts = mesh.cell_type == CellType::tri3 ? 2 : 3;  // children of a cell: 2^cuts
+    for (Index c = 0; c < mesh.cell_count(); ++c) parent.push_back(c >> (cuts * body.refine));
   }
   for (std::size_t k = 0; k < body.refine_where.size(); ++k) {
     const RefinedPlace& where = body.refine_where[k];
@@ -189,6 +190,24 @@ Result<void> refine(const SceneBody& body, const std::string& folder, Mesh& mesh
   return {};
 }
 
+Result<void> add_fiber_field(const SceneFiberField& field, Mesh& mesh) {
+  if (field.name.empty()) return Error{"it has no name, by which fibers and muscles would find it; give one"};
+  for (const auto* list : {&mesh.cell_fields, &mesh.fields}) {
+    for (const MeshField& f : *list) {
+      if (f.name == field.name)
+        return Error{"the mesh has a field \"" + field.name + "\" already; give another name"};
+    }
+  }
+  auto directions = laplace_directions(mesh, field);
+  if (!directions) return directions.failure();
+  MeshField made;
+  made.name = field.name;
+  made.components = 3;
+  for (const Vec3& d : directions.value()) made.values.insert(made.values.end(), {d.x, d.y, d.z});
+  mesh.cell_fields.push_back(std::move(made));
+  return {};
+}
+
 }  // namespace
 
 Result<MadeBody> make_body(const SceneBody& body, const std::string& folder, const std::string& where,
@@ -205,6 +224,10 @@ Result<MadeBody> make_body(const SceneBody& body, const std::string& folder, con
   if (auto r = name_places(body, folder, def.mesh); !r) return Error{where + "." + r.error()};
   if (auto r = refine(body, folder, def.mesh, made.parent); !r)
     return Error{where + "." + r.error(), r.failure().kind};
+  for (std::size_t k = 0; k < body.fiber_fields.size(); ++k) {
+    if (auto r = add_fiber_field(body.fiber_fields[k], def.mesh); !r)
+      return Error{where + "." + place("fiber_fields", k) + ": " + r.error()};
+  }
   for (std::size_t m = 0; m < body.materials.size(); ++m) {
     auto refined = refined_numbers(body.materials[m], folder, made.parent);
     auto material = refined ? make_material(refined.value(), folder, &def.mesh) : refined.failure();

@@ -317,6 +317,22 @@ Result<std::vector<FiberFamily>> fibers_of(const MaterialDef& def, const Mesh* m
   return families;
 }
 
+// With the families that stand for those in all directions.
+static Result<std::vector<FiberFamily>> spread_all(const MaterialDef& def,
+                                                   std::vector<FiberFamily>& families) {
+  std::vector<FiberFamily> all;
+  for (std::size_t i = 0; i < families.size(); ++i) {
+    if (!def.fibers[i].spread) {
+      all.push_back(std::move(families[i]));
+      continue;
+    }
+    auto spread = spread_fibers(families[i], *def.fibers[i].spread);
+    if (!spread) return Error{"fibers[" + std::to_string(i) + "]: " + spread.error()};
+    all.insert(all.end(), spread.value().begin(), spread.value().end());
+  }
+  return all;
+}
+
 Result<MaterialPtr> make_material(const MaterialDef& def, const std::string& folder, const Mesh* mesh) {
   if (def.prony.empty() && def.static_time != StaticTime::long_term)
     return Error{"static_time is given without prony, whose time it would be; give its terms or drop it"};
@@ -327,7 +343,9 @@ Result<MaterialPtr> make_material(const MaterialDef& def, const std::string& fol
   if (matrix && !def.fibers.empty()) {
     auto families = fibers_of(def, mesh);
     if (!families) return families.failure();
-    matrix = with_fibers(std::move(matrix).value(), families.value());
+    auto all = spread_all(def, families.value());
+    if (!all) return all.failure();
+    matrix = with_fibers(std::move(matrix).value(), all.value());
   }
   const CompressionPenalty& penalty = def.compression_penalty;
   const bool penalized = penalty.modulus != 0 || penalty.beta != CompressionPenalty{}.beta;

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "isochor/fiber_fields.h"
 #include "isochor/generate.h"
 #include "isochor/lattice.h"
 #include "isochor/mesh_select.h"
@@ -77,6 +78,12 @@ struct LawConstants {
 // where a cell takes the axis that its nodes agree on best.
 struct SceneFibers : FiberFamily {
   std::string field;
+  std::optional<FiberSpread> spread;  // about the direction
+};
+
+// Directions from a Laplace problem, as a field of the mesh in its cells.
+struct SceneFiberField : LaplaceFibers {
+  std::string name;
 };
 
 // Numbers cell by cell, in the order of the cells of the body's mesh: in place or in a text file.
@@ -139,12 +146,21 @@ struct SceneBody {
   // other. Numbers cell by cell are those of the mesh before that.
   int refine = 0;
   std::vector<RefinedPlace> refine_where;
+  std::vector<SceneFiberField> fiber_fields;  // made in the refined mesh
   Element element = Element::tet4_edge_smoothed;
   std::vector<MaterialDef> materials;
   std::optional<double> guard_stiffness;  // see BodyDef
   double guard_threshold = 0.5;
   // Dynamics: how the body moves at the start; it turns about its center of mass.
   Vec3 velocity{}, angular_velocity{};  // [m/s], [rad/s]
+};
+
+// When effects are there: in the steps between two times. What no entry names is always there; what several
+// name is there while any of them says so.
+struct ScheduleDef {
+  std::vector<std::string> effects;  // by name
+  double from = 0;                   // [s]; statics: load factor
+  std::optional<double> to;          // absent: to the end
 };
 
 enum class AnalysisType : std::uint8_t { statics, dynamics };
@@ -244,6 +260,7 @@ struct SceneDef : SceneEffects {
   std::string folder;  // relative mesh paths start here; not part of a scene file
   std::vector<SceneBody> bodies;
   AnalysisDef analysis;
+  std::vector<ScheduleDef> schedule;
   std::vector<ProbeDef> probes;
   std::vector<OrientationDef> orientations;
   OutputDef outputs;
@@ -267,6 +284,15 @@ struct DisplaySurface {
   std::vector<EmbeddedPoint> points;
 };
 
+// An effect that is not always there, and what takes its place when it is not.
+struct ScheduledEffect {
+  EffectId id{};
+  std::string name;
+  EffectPtr effect, idle;
+  std::vector<std::array<double, 2>> times;  // from and to [s]
+  bool there = true;
+};
+
 struct BuiltScene {
   World world;
   std::vector<BodyId> bodies = {};
@@ -276,6 +302,8 @@ struct BuiltScene {
   std::vector<std::vector<Index>> parents = {};
   std::vector<Obstacle> obstacles = {};     // by contact, with what their files hold
   std::vector<Obstacle> rigid_shapes = {};  // by rigid body, likewise
+  std::vector<ScheduledEffect> scheduled = {};
+  std::vector<Gauge> gauge_columns = {};  // of scenes with a schedule: gauges that there are at any time
 
   std::span<const EffectId> ids(const EffectKind& kind) const {
     const auto found = effects.find(&kind);
@@ -305,5 +333,9 @@ SchemePtr make_scheme(const AnalysisDef& analysis);
 
 // Reads meshes, makes materials and effects, compiles the world. Errors are those of bad input.
 Result<BuiltScene> build(const SceneDef& scene, const BuildOptions& options = {});
+
+// Has those effects there that the schedule wants in an increment around time t, and no others; true when
+// that changed something. The world compiles then. Errors: what the world refuses, with the effects named.
+Result<bool> follow_schedule(BuiltScene& built, double t);
 
 }  // namespace isochor

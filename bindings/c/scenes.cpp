@@ -4,6 +4,7 @@
 #include "handles.h"
 #include "scenes/library.h"
 #include "scenes/scene_file.h"
+#include "scenes/schedule.h"
 
 using namespace isochor;
 using namespace isochor::c;
@@ -76,6 +77,7 @@ extern "C" iso_status iso_scene_world(const iso_scene* scene, int32_t threads, i
     (void)given(out, "out");
     if (!good(scene)) refuse("the scene is none that iso_scene_open() made");
     if (threads < 0) refuse("threads = " + std::to_string(threads) + "; it must be positive, or 0 for all");
+    if (auto r = no_schedule(scene->scene, "a world of a scene"); !r) refuse(r.error());
     BuiltScene built = need(build(scene->scene, {threads}));
     Keyring keys;
     for (std::size_t b = 0; b < built.bodies.size(); ++b)

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "constraints/active/mesh_field.h"
+#include "constraints/stencil/mesh_field.h"
 #include "engine/base/text.h"
 #include "isochor/effects/active.h"
 

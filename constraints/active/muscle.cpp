@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "constraints/active/mesh_field.h"
 #include "constraints/stencil/amount_row.h"
+#include "constraints/stencil/mesh_field.h"
 #include "engine/base/text.h"
 #include "isochor/effects/active.h"
 
@@ -188,7 +188,7 @@ class MuscleEffect final : public EffectSource {
     const BodyData& body = builder.body(def_.body);
     std::vector<Vec3> cells = def_.directions;
     if (!def_.field.empty()) {
-      auto read = directions_in(body.mesh);
+      auto read = cell_directions(body.mesh, def_.field);
       if (!read) return Error{who() + read.error()};
       cells = std::move(read).value();
     }
@@ -215,20 +215,6 @@ class MuscleEffect final : public EffectSource {
     const double n = dot(d, d);
     if (n > 0 && std::isfinite(n)) return {};
     return Error{who() + what + " has no length; give three numbers that are not all zero"};
-  }
-
-  Result<std::vector<Vec3>> directions_in(const Mesh& mesh) const {
-    auto found = cell_field(mesh, def_.field);
-    if (!found) return found.failure();
-    const MeshField& field = *found.value();
-    if (field.components != 3) {
-      return Error{"field \"" + def_.field + "\" has " + std::to_string(field.components) +
-                   " components; directions have three"};
-    }
-    std::vector<Vec3> out;
-    for (std::size_t c = 0; c + 2 < field.values.size(); c += 3)
-      out.push_back({field.values[c], field.values[c + 1], field.values[c + 2]});
-    return out;
   }
 
   // Of the stencils of the energy. A patch takes the axis that its cells agree on best, whatever their signs.

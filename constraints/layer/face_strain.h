@@ -38,7 +38,6 @@ class FaceStrainPool : public StencilPool {
   // From tr C - 2 and det C - 1, which keep their digits at small strain.
   virtual FaceResponse respond(double trace_minus_2, double q_minus_1) const = 0;
 
- private:
   struct Frame {
     Vec3 t1, t2;  // orthonormal, in the plane of the face at rest
     double weight = 0;
@@ -53,9 +52,14 @@ class FaceStrainPool : public StencilPool {
     double q_minus_1() const { return 2 * (e11 + e22) + 4 * e11 * e22 - g * g; }
   };
   Strain strain(Index face, std::size_t point, std::span<const Vec3> x, std::span<const Vec3> rest) const;
+  std::size_t points() const { return static_cast<std::size_t>(rule_->points); }
+  // `point`: of all faces, face * points() + its number there.
+  const Frame& frame(std::size_t point) const { return frame_[point]; }
+  const Slope* slopes(std::size_t point, std::size_t nodes) const { return slope_.data() + point * nodes; }
+
+ private:
   void add_point(const StencilSlots& slots, Index face, std::size_t point, const Strain& e,
                  const FaceResponse& w, double factor, std::span<Vec3> slope, bool hessian) const;
-  std::size_t points() const { return static_cast<std::size_t>(rule_->points); }
 
   std::string name_;
   Gives gives_;

@@ -100,6 +100,10 @@ std::array<Vec3, 4> HingePool::corners(Index edge, std::span<const Vec3> x) cons
   return {a, b, x[at(n[2])], n.size() == 4 ? x[at(n[3])] : 0.5 * (a + b) + ahead_[at(edge)]};
 }
 
+double HingePool::turned(Index edge, std::span<const Vec3> x) const {
+  return length_[at(edge)] * (angle(corners(edge, x)) - natural_[at(edge)]);
+}
+
 // moment phi'' + H phi' phi'^T, `slope` the phi'.
 void HingePool::write_hessian(Index s, const std::array<Vec3, 4>& x, std::span<const Vec3> slope,
                               double moment, Mat3* block) const {

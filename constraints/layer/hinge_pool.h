@@ -34,6 +34,8 @@ class HingePool final : public StencilPool {
 
   double rest_length(Index edge) const { return length_[at(edge)]; }
   bool is_clamped(Index edge) const { return nodes_[edge].size() == 3; }
+  double stiffness(Index edge) const { return stiffness_[at(edge)]; }
+  double turned(Index edge, std::span<const Vec3> x) const;  // phi [m]; NaN where a face has no size
 
  private:
   std::array<Vec3, 4> corners(Index edge, std::span<const Vec3> x) const;

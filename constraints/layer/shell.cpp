@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "constraints/layer/membrane_pool.h"
-#include "constraints/layer/shell_rows.h"
+#include "constraints/layer/sheet_fields.h"
+#include "constraints/layer/sheet_pool.h"
+#include "constraints/stencil/mesh_field.h"
 #include "constraints/stencil/surface_nodes.h"
 #include "engine/base/text.h"
 #include "engine/scene/builder.h"
@@ -49,15 +50,21 @@ bool any(const Selection& s) {
 
 class ShellInstance final : public EffectInstance {
  public:
-  ShellInstance(std::string name, std::shared_ptr<const MembranePool> pool)
-      : name_(std::move(name)), pool_(std::move(pool)) {}
+  ShellInstance(std::string name, SheetRecovery sheet, std::shared_ptr<Amount> amount)
+      : name_(std::move(name)), sheet_(std::move(sheet)), amount_(std::move(amount)) {}
+  Amount* amount() override { return amount_.get(); }
+  bool amount_in_energy() const override { return true; }
   void gauges(const GaugeContext& c, std::vector<Gauge>& out) const override {
-    out.push_back({name_, "shell", "area", "m^2", pool_->area(c.state.x, c.system.parts().rest)});
+    out.push_back({name_, "shell", "area", "m^2", sheet_.membrane->area(c.state.x, c.system.parts().rest)});
+    double largest = 0;
+    for (const SheetCell& cell : recover_sheet(sheet_, c)) largest = std::max(largest, cell.largest);
+    out.push_back({name_, "shell", "largest_stress", "Pa", largest});
   }
 
  private:
   std::string name_;
-  std::shared_ptr<const MembranePool> pool_;
+  SheetRecovery sheet_;
+  std::shared_ptr<Amount> amount_;  // of the prestretch; null: there is none
 };
 
 class ShellEffect final : public EffectSource {
@@ -86,6 +93,7 @@ class ShellEffect final : public EffectSource {
                    " N m; it must be positive, or 0 for that of a solid sheet; one that does not resist "
                    "bending at all is a membrane"};
     }
+    if (auto r = check_sheet(def_.prestretch, def_.amount, def_.fibers); !r) return Error{who() + r.error()};
     return {};
   }
 
@@ -118,23 +126,74 @@ class ShellEffect final : public EffectSource {
                    "clamped holds no edge of its rim; select both ends of edges that only one of its "
                    "faces has"};
     }
-    const double mu = def_.young / (2 * (1 + def_.poisson));
-    const auto membrane = std::make_shared<MembranePool>(def_.name, 3, bent.triangles, builder.rest(),
-                                                         mu * def_.thickness, def_.poisson);
-    builder.add_stencils(membrane);
+    auto membrane = stretching(builder, bent.triangles);
+    if (!membrane) return membrane.failure();
+    SheetRecovery sheet;
+    sheet.membrane = membrane.value().pool;
+    builder.add_stencils(sheet.membrane);
     if (bending.value().rows->rows() > 0) {
       bending.value().rows->stencil_pool = builder.add_stencils(bending.value().hinges);
-      builder.add_rows(bending.value().rows);
+      sheet.row_pool = builder.add_rows(bending.value().rows);
     }
-    for (Index t = 0; def_.density > 0 && t < membrane->stencils(); ++t) {
-      for (const Index n : membrane->nodes()[t])
-        builder.add_mass(n, def_.density * def_.thickness * membrane->rest_area(t) / 3);
+    for (Index t = 0; def_.density > 0 && t < sheet.membrane->stencils(); ++t) {
+      for (const Index n : sheet.membrane->nodes()[t])
+        builder.add_mass(n, def_.density * def_.thickness * sheet.membrane->rest_area(t) / 3);
     }
-    return std::unique_ptr<EffectInstance>(std::make_unique<ShellInstance>(def_.name, membrane));
+    sheet.bending = std::move(bending).value();
+    sheet.thickness = def_.thickness;
+    sheet.solid = def_.bending == 0;
+    return std::unique_ptr<EffectInstance>(
+        std::make_unique<ShellInstance>(def_.name, std::move(sheet), membrane.value().amount));
   }
 
  private:
   std::string who() const { return "shell \"" + def_.name + "\": "; }
+
+  struct Stretching {
+    std::shared_ptr<const MembranePool> pool;
+    std::shared_ptr<Amount> amount;
+  };
+  // With the directions that a field of the mesh has for them.
+  Result<std::vector<FiberFamily>> fibers_in(const Mesh& mesh) const {
+    std::vector<FiberFamily> fibers = def_.fibers;
+    if (def_.fiber_field.empty()) return fibers;
+    if (fibers.empty()) return Error{"fiber_field is given without fibers; give their constants, or drop it"};
+    auto directions = cell_directions(mesh, def_.fiber_field);
+    if (!directions) return directions.failure();
+    for (FiberFamily& f : fibers) {
+      if (!f.directions.empty()) return Error{"directions and fiber_field are given; give one of them"};
+      f.directions = directions.value();
+    }
+    if (auto r = check_sheet(def_.prestretch, def_.amount, fibers); !r) return r.failure();
+    return fibers;
+  }
+  Result<Stretching> stretching(const Builder& builder, std::span<const Index> triangles) const {
+    auto fibers = fibers_in(builder.body(def_.body).mesh);
+    if (!fibers) return Error{who() + fibers.error()};
+    for (std::size_t k = 0; k < fibers.value().size(); ++k) {
+      const std::size_t count = fibers.value()[k].directions.size();
+      const bool whole = builder.body(def_.body).thin() && def_.surfaces.empty();
+      if (count == 0 || (whole && 3 * count == triangles.size())) continue;
+      return Error{who() + "fibers[" + std::to_string(k) + "]: directions has " + std::to_string(count) +
+                   " entries; " +
+                   (whole ? "it takes one a cell of the thin body, which has " +
+                                std::to_string(triangles.size() / 3) + " cells"
+                          : "a shell on named surfaces takes one direction for all, or leave surfaces out")};
+    }
+    Stretching out;
+    Sheet sheet;
+    sheet.mu = def_.young / (2 * (1 + def_.poisson));
+    sheet.poisson = def_.poisson;
+    sheet.thickness = def_.thickness;
+    sheet.prestretch = def_.prestretch;
+    sheet.fibers = std::move(fibers).value();
+    if (sheet.prestretched()) sheet.amount = out.amount = std::make_shared<Amount>(def_.amount);
+    std::string undirected;
+    out.pool = make_sheet(def_.name, 3, triangles, builder.rest(), sheet, undirected);
+    if (undirected.empty()) return out;
+    return Error{who() + "the direction of its " + undirected +
+                 " stands across one of its faces; give one that lies in the sheet"};
+  }
 
   Result<std::vector<Index>> sheet(const Builder& builder) const {
     if (!builder.has_body(def_.body)) return Error{who() + builder.no_body(def_.body)};

@@ -58,26 +58,17 @@ using Rows = std::vector<std::map<Index, double>>;  // [row][column], symmetric
 // with the tangents t, t' of the other two edges, symmetric, and n across this one in the plane.
 void add_triangle(const Index* nodes, const Index* row, std::span<const Vec3> rest, double bending, double nu,
                   Rows& compliance) {
-  const Vec3 x[3] = {rest[at(nodes[0])], rest[at(nodes[1])], rest[at(nodes[2])]};
-  const Vec3 twice = cross(x[1] - x[0], x[2] - x[0]);
-  const double area = 0.5 * norm(twice);
-  const Vec3 up = direction(twice);
-  Vec3 tangent[3];
-  double scale[3], trace[3];
-  for (std::size_t k = 0; k < 3; ++k) tangent[k] = direction(x[(k + 1) % 3] - x[k]);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec3 across = cross(tangent[k], up), &t = tangent[(k + 1) % 3], &u = tangent[(k + 2) % 3];
-    scale[k] = 1 / (dot(across, t) * dot(across, u));
-    trace[k] = scale[k] * dot(t, u);
-  }
+  const double area =
+      0.5 * norm(cross(rest[at(nodes[1])] - rest[at(nodes[0])], rest[at(nodes[2])] - rest[at(nodes[0])]));
+  const std::array<EdgeMoment, 3> edge = edge_moments(nodes, rest);
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       if (row[i] < 0 || row[j] < 0) continue;
-      const Vec3 &a = tangent[(i + 1) % 3], &b = tangent[(i + 2) % 3], &c = tangent[(j + 1) % 3],
-                 &d = tangent[(j + 2) % 3];
-      const double both = 0.5 * scale[i] * scale[j] * (dot(a, c) * dot(b, d) + dot(a, d) * dot(b, c));
-      compliance[at(row[i])][row[j]] +=
-          area / (bending * (1 - nu * nu)) * ((1 + nu) * both - nu * trace[i] * trace[j]);
+      const Vec3 &a = edge[i].t, &b = edge[i].u, &c = edge[j].t, &d = edge[j].u;
+      const double both =
+          0.5 * edge[i].scale * edge[j].scale * (dot(a, c) * dot(b, d) + dot(a, d) * dot(b, c));
+      const double traces = edge[i].scale * dot(a, b) * (edge[j].scale * dot(c, d));
+      compliance[at(row[i])][row[j]] += area / (bending * (1 - nu * nu)) * ((1 + nu) * both - nu * traces);
     }
   }
 }
@@ -115,6 +106,37 @@ void fill_rows(const Rows& compliance, const HingePool& hinges, std::span<const 
 
 }  // namespace
 
+std::array<EdgeMoment, 3> edge_moments(const Index* triangle, std::span<const Vec3> rest) {
+  const Vec3 x[3] = {rest[at(triangle[0])], rest[at(triangle[1])], rest[at(triangle[2])]};
+  const Vec3 up = direction(cross(x[1] - x[0], x[2] - x[0]));
+  Vec3 tangent[3];
+  for (std::size_t k = 0; k < 3; ++k) tangent[k] = direction(x[(k + 1) % 3] - x[k]);
+  std::array<EdgeMoment, 3> out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 across = cross(tangent[k], up), &t = tangent[(k + 1) % 3], &u = tangent[(k + 2) % 3];
+    out[k] = {t, u, 1 / (dot(across, t) * dot(across, u))};
+  }
+  return out;
+}
+
+// m = H phi + (1 - H C) lambda; the rows hold 1 - C H.
+std::vector<double> moments_of(const Bending& bending, std::span<const Vec3> x,
+                               std::span<const double> lambda) {
+  const ShellRows& rows = *bending.rows;
+  const HingePool& hinges = *bending.hinges;
+  std::vector<double> out;
+  for (Index r = 0; r < rows.rows(); ++r) {
+    double sum = 0;
+    for (Index k = rows.map.offset[at(r)]; k < rows.map.offset[at(r) + 1]; ++k) {
+      const Index e = rows.map.item[at(k)];
+      const double share = ((e == r ? 1.0 : 0.0) - rows.weight[at(k)]) / hinges.stiffness(e);
+      sum += share * lambda[at(e)];
+    }
+    out.push_back(hinges.stiffness(r) * (hinges.turned(r, x) - sum) + lambda[at(r)]);
+  }
+  return out;
+}
+
 Result<Bending> make_bending(const std::string& name, const BentSheet& sheet, std::span<const Vec3> rest) {
   auto found = edges_of(sheet, rest);
   if (!found) return found.failure();
@@ -144,6 +166,7 @@ Result<Bending> make_bending(const std::string& name, const BentSheet& sheet, st
     const Index* n = &sheet.triangles[t];
     Index row[3];
     for (std::size_t k = 0; k < 3; ++k) row[k] = edges.at(ends(n[k], n[(k + 1) % 3])).row;
+    out.row_of.push_back({row[0], row[1], row[2]});
     add_triangle(n, row, rest, sheet.bending, sheet.poisson, compliance);
   }
   std::vector<double> stiffness;

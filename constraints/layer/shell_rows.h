@@ -34,7 +34,20 @@ struct Bending {
   std::shared_ptr<const HingePool> hinges;
   std::shared_ptr<ShellRows> rows;  // without their stencil pool; no rows: nothing bends
   Index clamped_edges = 0;
+  std::vector<std::array<Index, 3>> row_of;  // by triangle and edge, -1: none
 };
+
+// The moment of a triangle that bends one of its edges alone, by the moment of that edge: scale times the
+// symmetric part of t t', at rest.
+struct EdgeMoment {
+  Vec3 t, u;
+  double scale = 0;
+};
+std::array<EdgeMoment, 3> edge_moments(const Index* triangle, std::span<const Vec3> rest);
+
+// Moments m of the edges [N], from the multipliers of their rows.
+std::vector<double> moments_of(const Bending& bending, std::span<const Vec3> x,
+                               std::span<const double> lambda);
 
 // Refused: edges that more than two triangles share. The message is the end of a sentence about the sheet.
 Result<Bending> make_bending(const std::string& name, const BentSheet& sheet, std::span<const Vec3> rest);

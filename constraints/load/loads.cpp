@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "constraints/load/current_traction.h"
+#include "constraints/load/varying_load.h"
 #include "constraints/stencil/face_pool.h"
 #include "engine/scene/builder.h"
 #include "isochor/effects/load.h"
@@ -23,6 +23,25 @@ class DeadLoad final : public LoadPool {
  private:
   std::string name_;
   std::vector<std::pair<Index, Vec3>> forces_;
+  std::shared_ptr<Amount> amount_;
+};
+
+// The same where factors change over time.
+class MovingLoad final : public LoadPool {
+ public:
+  MovingLoad(std::string name, LoadedFaces faces, std::span<const Vec3> rest, std::shared_ptr<Amount> amount)
+      : name_(std::move(name)), faces_(std::move(faces)), forces_(faces_, rest), amount_(std::move(amount)) {}
+  std::string_view name() const override { return name_; }
+  void add(double t, std::span<Vec3> force) const override {
+    const double a = amount_->value(t);
+    for (const RestAreaForces::Share& s : forces_.shares)
+      force[at(s.node)] += (a * s.area * faces_.factor_at(s.entry, t)) * *faces_.traction;
+  }
+
+ private:
+  std::string name_;
+  LoadedFaces faces_;
+  RestAreaForces forces_;
   std::shared_ptr<Amount> amount_;
 };
 
@@ -58,9 +77,10 @@ class TractionEffect final : public EffectSource {
     if (has_traction && has_force) {
       return Error{"traction \"" + def_.name + "\": both traction and total_force are given; give one"};
     }
-    if (has_force && (def_.current_area || !def_.field.empty())) {
-      return Error{"traction \"" + def_.name +
-                   "\": a total_force has no current_area and no field; give a traction with them"};
+    if (has_force && (def_.current_area || varies())) {
+      return Error{
+          "traction \"" + def_.name +
+          "\": a total_force has no current_area and no field or profile; give a traction with them"};
     }
     if (def_.lagged && !def_.current_area) {
       return Error{"traction \"" + def_.name +
@@ -74,7 +94,7 @@ class TractionEffect final : public EffectSource {
     auto faces = builder.faces(def_.body, surface, def_.name);
     if (!faces) return faces.failure();
     const auto per = static_cast<std::size_t>(nodes_per_face(builder.body(def_.body).mesh.cell_type));
-    if (def_.current_area || !def_.field.empty()) return build_varying(builder, faces.value(), per);
+    if (def_.current_area || varies()) return build_varying(builder, faces.value());
     std::vector<std::pair<Index, double>> area;
     double total = 0;
     for (std::size_t f = 0; f < faces.value().size(); f += per) {
@@ -93,19 +113,24 @@ class TractionEffect final : public EffectSource {
   }
 
  private:
+  bool varies() const { return !def_.field.empty() || !def_.profile.empty(); }
+
   // Over a surface that is as it is, or with factors.
-  Result<std::unique_ptr<EffectInstance>> build_varying(Builder& builder, const std::vector<Index>& faces,
-                                                        std::size_t per) const {
-    const BodyData& body = builder.body(def_.body);
-    auto factors = node_factors(body.mesh, def_.field);
-    if (!factors) return Error{"traction \"" + def_.name + "\": " + factors.error()};
-    LoadedFaces loaded{faces, per, {}};
-    for (const Index node : faces)
-      loaded.traction.push_back(factors.value()[at(node - body.first_node)] * def_.traction);
-    if (!def_.current_area)
-      return add_dead_load(builder, def_.name, rest_area_forces(loaded, builder.rest()), def_.amount);
+  Result<std::unique_ptr<EffectInstance>> build_varying(Builder& builder,
+                                                        const std::vector<Index>& faces) const {
+    auto loaded = loaded_faces(builder, builder.body(def_.body), faces, def_.field, def_.profile);
+    if (!loaded) return Error{"traction \"" + def_.name + "\": " + loaded.error()};
+    loaded.value().traction = def_.traction;
+    if (!def_.current_area && !loaded.value().varies_in_time()) {
+      return add_dead_load(builder, def_.name, rest_area_forces(loaded.value(), builder.rest()), def_.amount);
+    }
     auto amount = std::make_shared<Amount>(def_.amount);
-    add_current_traction(builder, def_.name, loaded, def_.lagged, amount);
+    if (def_.current_area) {
+      add_varying_load(builder, def_.name, std::move(loaded).value(), def_.lagged, amount);
+    } else {
+      builder.add_load(
+          std::make_shared<MovingLoad>(def_.name, std::move(loaded).value(), builder.rest(), amount));
+    }
     return std::unique_ptr<EffectInstance>(std::make_unique<LoadInstance>(std::move(amount)));
   }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 
+#include "constraints/load/varying_load.h"
 #include "constraints/stencil/amount_row.h"
 #include "constraints/stencil/face_pool.h"
 #include "constraints/stencil/surface_nodes.h"
@@ -164,6 +165,7 @@ class PressureEffect final : public EffectSource {
     auto list = outward_faces(builder, def_.body, def_.surfaces, "pressure \"" + def_.name + "\"");
     if (!list) return list.failure();
     const std::vector<Index>& faces = list.value();
+    if (!def_.field.empty() || !def_.profile.empty()) return build_varying(builder, faces);
     const auto per = static_cast<std::size_t>(nodes_per_face(builder.body(def_.body).mesh.cell_type));
     Vec3 origin{};
     for (const Index n : faces) origin += (1.0 / static_cast<double>(faces.size())) * builder.rest()[at(n)];
@@ -187,6 +189,16 @@ class PressureEffect final : public EffectSource {
   }
 
  private:
+  // No volume stands for it: the forces are integrated face by face, the rim is nothing special.
+  Result<std::unique_ptr<EffectInstance>> build_varying(Builder& builder,
+                                                        const std::vector<Index>& faces) const {
+    auto loaded = loaded_faces(builder, builder.body(def_.body), faces, def_.field, def_.profile);
+    if (!loaded) return Error{"pressure \"" + def_.name + "\": " + loaded.error()};
+    auto amount = std::make_shared<Amount>(def_.amount);
+    add_varying_load(builder, def_.name, std::move(loaded).value(), def_.lagged, amount);
+    return std::unique_ptr<EffectInstance>(std::make_unique<PressureInstance>(def_.name, std::move(amount)));
+  }
+
   PressureDef def_;
 };
 

@@ -6,6 +6,7 @@
 #include "isochor/effects/cable.h"
 #include "isochor/effects/cavity.h"
 #include "isochor/effects/contact.h"
+#include "isochor/effects/idle.h"
 #include "isochor/effects/layer.h"
 #include "isochor/effects/load.h"
 #include "isochor/effects/support.h"

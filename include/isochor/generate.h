@@ -23,7 +23,8 @@ ISOCHOR_API Result<Mesh> box_mesh(const BoxMeshDef& def);
 // A Tet10 mesh on the same corners, with straight edges. Meshes that are not Tet4 are returned as they are.
 ISOCHOR_API Mesh to_tet10(const Mesh& mesh);
 
-// Every cell cut into eight of its own kind, `levels` times; the children of cell c are 8 c to 8 c + 7.
+// Every cell cut into eight of its own kind (triangles into four), `levels` times; the children of cell c are
+// 8 c to 8 c + 7 (4 c to 4 c + 3).
 // Curved edges are followed. Regions, surfaces, node sets and fields are kept: a new node belongs to a set
 // when all nodes that it lies between do, and lies on the surface of the body where the whole set does;
 // fields at nodes are interpolated, those in cells and regions handed down. Tets are cut along their shortest
@@ -34,10 +35,11 @@ struct RefinedMesh {
   Mesh mesh;
   std::vector<Index> parent;  // of each cell, a cell of the mesh before
 };
-// The cells with these numbers cut into eight, neighbors into as few as makes all fit together: tets are
-// bisected at their longest edges, in an order that is one for the whole mesh. What is kept is as above.
-// Repeated, it leaves a bounded number of shapes in practice (no bound is proven). Errors: hexahedra, cells
-// that there are not, arrays that contradict each other, more than memory holds.
+// The cells with these numbers cut into eight (triangles into four), neighbors into as few as makes all fit
+// together: tets and triangles are bisected at their longest edges, in an order that is one for the whole
+// mesh. What is kept is as above. Repeated, it leaves a bounded number of shapes in practice (no bound is
+// proven). Errors: hexahedra, cells that there are not, arrays that contradict each other, more than memory
+// holds.
 ISOCHOR_API Result<RefinedMesh> refine_cells(const Mesh& mesh, std::span<const Index> cells);
 
 }  // namespace isochor

@@ -14,6 +14,7 @@ void describe(Visitor& io, MembraneDef& m) {
   io.number(Key("young", "Pa", "of the membrane").above(0).must(), m.young, d.young);
   io.number(Key("poisson", "", "of the membrane").least(0).most(0.5), m.poisson, d.poisson);
   io.number(Key("thickness", "m", "of the membrane").above(0).must(), m.thickness, d.thickness);
+  describe_prestretch(io, m);
 }
 
 }  // namespace keys

@@ -14,6 +14,9 @@ void describe(Visitor& io, PressureDef& p) {
   io.body(body_key, p.body);
   io.names(surfaces_key.must(), p.surfaces);
   io.required_curve({"amount", "Pa", "positive pushes inward"}, p.amount, CurveStart::zero);
+  io.text({"field", "", "of the mesh at nodes with one component: factors on the pressure"}, p.field,
+          d.field);
+  io.text(profile_key, p.profile, d.profile);
   io.flag(
       {"lagged", "", "hold what a free rim adds within an iteration: symmetric systems, linear convergence"},
       p.lagged, d.lagged);

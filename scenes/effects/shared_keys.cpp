@@ -33,6 +33,16 @@ void describe(Visitor& io, Selection& s) {
   io.flag({"everything", "", "all nodes of the body"}, s.everything, d.everything);
 }
 
+void describe(Visitor& io, Prestretch& p) {
+  const Prestretch d;
+  io.about("prestretch",
+           "Stretch of a sheet where the body is at rest, seen from the sheet without stress, see "
+           "[shells](effects/shell.md#fibers-and-prestretch).");
+  io.number(Key("along", "", "its direction").above(0), p.along, d.along);
+  io.number(Key("across", "", "across it").above(0), p.across, d.across);
+  io.vector({"direction", "", "projected into each face"}, p.direction, d.direction);
+}
+
 // The rotation of a keyframe as a vector: axis times angle [rad].
 void describe(Visitor& io, Pose& p) {
   const Pose d;

@@ -16,10 +16,25 @@ ISOCHOR_WORDS(ObstacleShape, ISOCHOR_WORD(ObstacleShape, plane), ISOCHOR_WORD(Ob
 inline constexpr Key name_key{"name", "", "of the effect; all effects share one set of names"};
 inline constexpr Key body_key{"body", "", "by its name"};
 inline constexpr Key surfaces_key{"surfaces", "", "of the mesh or of the body"};
+inline constexpr Key profile_key{"profile", "",
+                                 "a factor in space and time: a formula of x, y, z (at rest) and t, see "
+                                 "[profiles](effects/loads.md#profiles)"};
 
 void describe(Visitor& io, Selection& s);
 void describe(Visitor& io, Pose& p);
 void describe(Visitor& io, Obstacle& o);
+
+void describe(Visitor& io, Prestretch& p);
+
+// Of layers that are stretched where the body is at rest.
+template <class Def>
+void describe_prestretch(Visitor& io, Def& d) {
+  const bool there = d.prestretch.along != 1 || d.prestretch.across != 1;
+  io.optional_object({"prestretch", "", "how much it is stretched where the body is at rest"}, d.prestretch,
+                     there);
+  io.curve({"amount", "", "of the prestretch: stretches are 1 + amount (stretch - 1)"}, d.amount,
+           CurveStart::zero, there);
+}
 
 // Of contact with whatever there is.
 template <class Def>

@@ -1,5 +1,6 @@
 #include "scenes/effects/kind.h"
 #include "scenes/effects/shared_keys.h"
+#include "scenes/keys/parts.h"
 
 namespace isochor {
 
@@ -19,6 +20,15 @@ void describe(Visitor& io, Rim& rim) {
   io.indices({"nodes", "", "of the body's mesh, counted from 0"}, s.nodes);
   io.boxes({"boxes", "m", "`[[lower, upper], ...]`, rest positions"}, s.boxes);
   io.flag({"everything", "", "all nodes of the body"}, s.everything, false);
+}
+
+void describe(Visitor& io, FiberFamily& f) {
+  const FiberFamily d;
+  io.about("sheet_fibers",
+           "A family of fibers in a shell, see [shells](effects/shell.md#fibers-and-prestretch).");
+  io.vector({"direction", "", "of all of them, at rest"}, f.direction, d.direction);
+  io.points({"directions", "", "one a cell of the thin body, instead of `direction`"}, f.directions);
+  describe_fiber_law(io, f);
 }
 
 void describe(Visitor& io, ShellDef& s) {
@@ -43,6 +53,10 @@ void describe(Visitor& io, ShellDef& s) {
                "supports hold nodes"},
               rim);
   io.flag({"flat", "", "free of bending when flat, not as the mesh has it"}, s.flat, d.flat);
+  describe_prestretch(io, s);
+  io.list({"fibers", "", "that only pull, in the plane of the sheet"}, s.fibers);
+  io.text({"fiber_field", "", "their directions: a field of the mesh in cells with three components"},
+          s.fiber_field, d.fiber_field);
 }
 
 }  // namespace keys

@@ -15,6 +15,7 @@ void describe(Visitor& io, TractionDef& t) {
   io.vector({"total_force", "N", "instead of `traction`"}, t.total_force, d.total_force);
   io.text({"field", "", "of the mesh at nodes with one component: factors on the traction"}, t.field,
           d.field);
+  io.text(profile_key, t.profile, d.profile);
   io.flag({"current_area", "", "per area as it is, not at rest"}, t.current_area, d.current_area);
   io.flag({"lagged", "", "of current_area: hold the area within an iteration, for symmetric systems"},
           t.lagged, d.lagged);

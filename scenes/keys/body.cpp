@@ -123,6 +123,23 @@ void describe(Visitor& io, MeshSelection& s) {
             s.tolerance, d.tolerance);
 }
 
+void describe(Visitor& io, SceneFiberField& f) {
+  const SceneFiberField d;
+  io.about("fiber_field",
+           "Directions in the cells of the mesh from a Laplace problem, see [fiber "
+           "fields](materials/fibers.md#fields-from-a-laplace-problem).");
+  io.required_text({"name", "", "of the field, for `field` of fibers, muscles and `fiber_field` of shells"},
+                   f.name);
+  io.names(Key("from", "", "surfaces or node sets where phi = 0").must(), f.from);
+  io.names(Key("to", "", "where phi = 1").must(), f.to);
+  io.vector({"axis", "", "that directions go round, at an angle; zero: along the gradient of phi"}, f.axis,
+            d.axis);
+  io.optional_angle({"angle_from", "rad", "off the way round, toward the axis, where phi = 0"},
+                    {"angle_from_deg", "deg", "the same, instead"}, f.angle_from, d.angle_from);
+  io.optional_angle({"angle_to", "rad", "where phi = 1"}, {"angle_to_deg", "deg", "the same, instead"},
+                    f.angle_to, d.angle_to);
+}
+
 void describe_at_rest(Visitor& io, SceneBody& b) {
   const SceneBody d;
   io.about("body", "A soft body, solid or thin.");
@@ -134,14 +151,16 @@ void describe_at_rest(Visitor& io, SceneBody& b) {
            "already"},
           b.surfaces);
   io.list({"node_sets", "", "nodes by where they are, inside the body as well"}, b.node_sets);
-  io.integer(
-      Key("refine", "", "cuts every cell into eight, so many times; see [refined meshes](#refined-meshes)")
-          .least(0)
-          .most(8),
-      b.refine, d.refine);
+  io.integer(Key("refine", "",
+                 "cuts every cell into eight (triangles into four), so many times; see [refined "
+                 "meshes](#refined-meshes)")
+                 .least(0)
+                 .most(8),
+             b.refine, d.refine);
   io.list(
       {"refine_where", "", "then cuts the cells of these places further, and neighbors as far as they must"},
       b.refine_where);
+  io.list({"fiber_fields", "", "directions in its cells, made in the refined mesh"}, b.fiber_fields);
   io.word({"element", "", "see [elements](elements.md)"}, b.element, d.element);
   io.list(Key("materials", "", "one, or one a region").absent("none, of a thin body"), b.materials);
   io.optional_number(

@@ -54,15 +54,8 @@ void describe(Visitor& io, MullinsSoftening& s) {
   io.number(Key("beta", "", "the same as a share of the largest energy density").least(0), s.beta, d.beta);
 }
 
-void describe(Visitor& io, SceneFibers& f) {
-  const SceneFibers d;
-  io.about("fibers",
-           "A family of fibers that only pull, added to the material, see [fibers](materials/fibers.md).");
-  io.vector({"direction", "", "of all of them, at rest"}, f.direction, d.direction);
-  io.points({"directions", "", "one a cell of the mesh, instead of `direction`"}, f.directions);
-  io.text(
-      {"field", "", "of the mesh file, with three components in cells or at nodes, instead of `direction`"},
-      f.field, d.field);
+void describe_fiber_law(Visitor& io, FiberFamily& f) {
+  const FiberFamily d;
   io.word({"law", "", "how they pull"}, f.law, d.law);
   io.number(Key("k1", "Pa", "stiffness").above(0).must(), f.k1, d.k1);
   io.number(Key("k2", "", "how soon they stiffen").least(0), f.k2, d.k2);
@@ -72,6 +65,31 @@ void describe(Visitor& io, SceneFibers& f) {
   io.number(Key("straight_modulus", "Pa", "of the toe law").least(0), f.straight_modulus, d.straight_modulus);
   io.number(Key("straight_stretch", "", "of the toe law: where its line begins").least(0), f.straight_stretch,
             d.straight_stretch);
+}
+
+void describe(Visitor& io, FiberSpread& s) {
+  const FiberSpread d;
+  io.about("fiber_spread",
+           "Fibers in all directions about one, see [spread](materials/fibers.md#fibers-in-all-directions).");
+  io.number({"concentration", "", "0: all alike, large: along the direction, negative: across it"},
+            s.concentration, d.concentration);
+  io.integer(Key("rings", "", "of the quadrature: cones about the direction").least(1).most(64), s.rings,
+             d.rings);
+  io.integer(Key("around", "", "of the quadrature: directions on each").least(1).most(128), s.around,
+             d.around);
+}
+
+void describe(Visitor& io, SceneFibers& f) {
+  const SceneFibers d;
+  io.about("fibers",
+           "A family of fibers that only pull, added to the material, see [fibers](materials/fibers.md).");
+  io.vector({"direction", "", "of all of them, at rest"}, f.direction, d.direction);
+  io.points({"directions", "", "one a cell of the mesh, instead of `direction`"}, f.directions);
+  io.text(
+      {"field", "", "of the mesh file, with three components in cells or at nodes, instead of `direction`"},
+      f.field, d.field);
+  io.maybe_object({"spread", "", "in all directions about it, instead of one"}, f.spread);
+  describe_fiber_law(io, f);
 }
 
 void describe(Visitor& io, CompressionPenalty& p) {

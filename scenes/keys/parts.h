@@ -6,6 +6,7 @@
 namespace isochor::keys {
 
 void describe(Visitor& io, MaterialDef& m);
+void describe_fiber_law(Visitor& io, FiberFamily& f);  // its constants, without directions
 void describe(Visitor& io, CellField& f);
 void describe(Visitor& io, BoxMeshDef& b);
 void describe(Visitor& io, LatticeMesh& l);

@@ -4,6 +4,16 @@
 
 namespace isochor::keys {
 
+void describe(Visitor& io, ScheduleDef& s) {
+  const ScheduleDef d;
+  io.about("schedule",
+           "Effects that are there between two times, see [effects that begin and "
+           "end](#effects-that-begin-and-end).");
+  io.names(Key("effects", "", "of any kind but `volumes`").must(), s.effects);
+  io.number(Key("from", "s", "the end of a step; statics: load factor").least(0), s.from, d.from);
+  io.optional_number(Key("to", "s", "likewise, later").above(0).absent("the end of the run"), s.to);
+}
+
 void describe(Visitor& io, SceneDef& s) {
   const SceneDef d;
   io.about("scene",
@@ -18,6 +28,7 @@ void describe(Visitor& io, SceneDef& s) {
   io.settings({"analysis", "", "how to advance"}, s.analysis);
   io.analysis_known(s.analysis);
   for (const EffectKind* kind : effect_kinds) kind->keys(*kind, io, s);
+  io.list({"schedule", "", "when effects begin and end; what it does not name is always there"}, s.schedule);
   WorldOptions& o = s.analysis.options;
   io.vector({"gravity", "m/s^2", "of everything that has mass"}, o.gravity, d.analysis.options.gravity);
   io.curve({"gravity_amount", "", "scales gravity over time"}, o.gravity_curve, CurveStart::zero,

@@ -64,6 +64,7 @@ class Run {
   bool keep(RunOutputs* outputs);
   bool keep_if_due(RunOutputs* outputs);
   void record(int step, const StepReport& report);
+  StepReport advance(double middle, double h);
   // True when the step ended the run.
   bool stopped(const StepReport& report);
   bool out_of_time() const {
@@ -163,6 +164,11 @@ bool Run::keep_if_due(RunOutputs* outputs) {
 }
 
 Result<void> Run::resume(const RunCheckpoint& c) {
+  // As it was in the step that ended there.
+  if (c.step > 0) {
+    if (auto r = follow_schedule(built_, (c.step - 0.5) * plan_steps(scene_.analysis).h); !r)
+      return r.failure();
+  }
   if (auto r = built_.world.load(std::as_bytes(std::span(c.state))); !r) return r;
   const std::string program = version() + ", " + build_description();
   result_.resumed_at = c.step;
@@ -216,6 +222,16 @@ bool Run::stopped(const StepReport& report) {
   return true;
 }
 
+// With the effects that are there around `middle`.
+StepReport Run::advance(double middle, double h) {
+  const auto changed = follow_schedule(built_, middle);
+  if (changed) return built_.world.advance(h);
+  StepReport refused;
+  refused.status = StepStatus::invalid;
+  refused.reason = changed.error();
+  return refused;
+}
+
 bool Run::write(RunOutputs* outputs, bool last) {
   if (!outputs) return true;
   auto r = outputs->record({scene_, built_, result_}, last);
@@ -247,7 +263,7 @@ void Run::march(RunOutputs* outputs) {
     report.status = StepStatus::cancelled;
     const auto& path_step = scene_.analysis.path_step;
     if (!interrupted_ && !out_of_time())
-      report = path_step ? world.follow(*path_step) : world.advance(plan.h);
+      report = path_step ? world.follow(*path_step) : advance((step - 0.5) * plan.h, plan.h);
     interrupted_ = interrupted_ || stop_asked();
     const bool over = stopped(report);
     const bool last = step == plan.steps || (path_step && world.time() >= scene_.analysis.duration);

@@ -1,5 +1,8 @@
 #include "scenes/run/step_recorder.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "engine/base/text.h"
 #include "scenes/run/step_measures.h"
 
@@ -23,6 +26,19 @@ StepRecorder::StepRecorder(const SceneDef& scene, const BuiltScene& built) : sce
   }
 }
 
+// The same ones in every record; what is not there now has no number.
+std::vector<Gauge> StepRecorder::in_columns(std::vector<Gauge> gauges) const {
+  if (built_.gauge_columns.empty()) return gauges;
+  std::vector<Gauge> out = built_.gauge_columns;
+  for (Gauge& column : out) {
+    const auto now = std::find_if(gauges.begin(), gauges.end(), [&](const Gauge& g) {
+      return g.effect == column.effect && g.quantity == column.quantity;
+    });
+    column.value = now == gauges.end() ? std::nan("") : now->value;
+  }
+  return out;
+}
+
 StepRecord StepRecorder::look(int step, const StepReport& report) {
   const World& world = built_.world;
   StepRecord r;
@@ -43,7 +59,7 @@ StepRecord StepRecorder::look(int step, const StepReport& report) {
   r.cavities.resize(scene_.cavities.size());
   const std::vector<Gauge> gauges = world.gauges();
   contacts_.look(r.time, gauges);
-  for (const Gauge& g : gauges) {
+  for (const Gauge& g : in_columns(gauges)) {
     const bool of_chamber = g.kind == "cavity" && (g.quantity == "pressure" || g.quantity == "volume");
     if (!of_chamber) r.gauges.push_back(g);
     for (std::size_t c = 0; c < scene_.cavities.size(); ++c) {

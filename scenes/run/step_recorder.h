@@ -27,6 +27,8 @@ class StepRecorder {
   std::vector<std::string> contact_findings() const { return contacts_.findings(); }
 
  private:
+  std::vector<Gauge> in_columns(std::vector<Gauge> gauges) const;
+
   const SceneDef& scene_;
   const BuiltScene& built_;
   std::vector<MaterialPoint> probes_;

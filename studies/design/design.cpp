@@ -15,6 +15,7 @@
 
 #include "engine/base/text.h"
 #include "scenes/body_parts.h"
+#include "scenes/schedule.h"
 #include "studies/design/smooth_field.h"
 #include "studies/design/write_gmsh.h"
 #include "studies/inverse/search.h"
@@ -344,6 +345,7 @@ Result<void> DesignSearch::check_dependence(const Matrix& jacobian) const {
 }
 
 Result<void> DesignSearch::begin() {
+  if (auto r = no_schedule(scene_, "design"); !r) return r.failure();
   auto built = build(scene_, {.threads = options_.threads});
   if (!built) return built.failure();
   if (options_.stiffness) {

@@ -16,6 +16,7 @@
 #include "engine/base/text.h"
 #include "isochor/gradients.h"
 #include "scenes/effects/kind.h"
+#include "scenes/schedule.h"
 #include "studies/drive/bounded.h"
 #include "studies/inverse/answer.h"
 
@@ -415,6 +416,7 @@ Result<Drive> drive(const SceneDef& scene, std::vector<Actuator> actuators, Targ
         "drive: the analysis of scene \"" + scene.name +
         "\" is not statics with fixed loads; set analysis.type to \"static\" and leave path_step out"};
   }
+  if (auto r = no_schedule(scene, "drive"); !r) return r.failure();
   auto built = build(scene, {.threads = options.threads});
   if (!built) return built.failure();
   Drive out;

@@ -6,6 +6,7 @@
 
 #include "engine/base/text.h"
 #include "scenes/effects/kind.h"
+#include "scenes/schedule.h"
 
 namespace isochor::inverse {
 
@@ -159,6 +160,7 @@ std::size_t numbers_of(const std::vector<Parameter>& parameters, const World& wo
 }  // namespace
 
 Result<Answer> answer(const SceneDef& scene, const Data& data, const ParametersOf& parameters, int threads) {
+  if (auto r = no_schedule(scene, "a search for constants"); !r) return r.failure();
   auto made = build(scene, {.threads = threads});
   if (!made) return made.failure();
   BuiltScene built = std::move(made).value();

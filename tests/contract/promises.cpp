@@ -395,6 +395,8 @@ TEST_CASE("forces, pressures and tensions of gauges go with the multipliers, siz
       const auto has = [](const std::string& unit, const char* what) { return unit == what; };
       for (const auto& [quantity, gauge] : one) {
         INFO(c.name << ", " << gauge.effect << ", " << quantity << " [" << gauge.unit << "]");
+        // The stress of a sheet is of its stretch and of its moments.
+        if (gauge.quantity == "largest_stress") continue;
         const double other = two.at(quantity).value;
         if (has(gauge.unit, "N") || has(gauge.unit, "Pa") || has(gauge.unit, "N/m")) {
           // Or it is given.

@@ -132,7 +132,7 @@ void add_current_tractions(std::vector<SceneCase>& out) {
   for (const auto& [element, name] : kElements) {
     for (const bool lagged : {false, true}) {
       SceneCase c = on_block(name + ", traction on the present area" + (lagged ? ", lagged" : ""), element,
-                             {"constraints/current_traction", "constraints/loads"}, {});
+                             {"constraints/varying_load", "constraints/loads"}, {});
       MeshField paint;
       paint.name = "paint";
       for (const Vec3& X : c.mesh.nodes) paint.values.push_back(1 + X.y - 0.5 * X.z);
@@ -147,6 +147,33 @@ void add_current_tractions(std::vector<SceneCase>& out) {
       c.stress_free = false;
       c.rigid_invariant = false;
       c.numbered_cells = true;  // the field is by node
+      out.push_back(c);
+    }
+  }
+}
+
+// Loads with a formula: tractions on the area at rest and as it is, and a pressure, which has no potential.
+void add_profiles(std::vector<SceneCase>& out) {
+  for (const auto& [element, name] : kElements) {
+    SceneCase c =
+        on_block(name + ", profiles", element, {"constraints/varying_load", "constraints/pressure"}, {});
+    c.stress_free = false;
+    c.rigid_invariant = false;
+    TractionDef pull;
+    pull.surface = "x1";
+    pull.traction = {0.3, -0.1, 0.2};
+    pull.profile = "1 + x*y - t/2";
+    TractionDef current = pull;
+    current.name = "current";
+    current.current_area = true;
+    for (const bool lagged : {false, true}) {
+      PressureDef press;
+      press.surfaces = {"z1", "y1"};
+      press.amount = Curve::constant(0.3);
+      press.profile = "cos(x) + 0.3*y*t";
+      press.lagged = lagged;
+      c.name = name + ", profiles" + (lagged ? ", lagged" : "");
+      c.effects = {traction(pull), traction(current), pressure(press)};
       out.push_back(c);
     }
   }
@@ -181,6 +208,7 @@ void add_active(std::vector<SceneCase>& out) {
   add_springs(out);
   add_equations(out);
   add_current_tractions(out);
+  add_profiles(out);
   add_given(out);
 }
 

@@ -5,6 +5,7 @@
 #include "contract/registry.h"
 #include "engine/elements/element_guard.h"
 #include "engine/elements/material_model.h"
+#include "isochor/fiber_fields.h"
 #include "isochor/mullins.h"
 #include "isochor/viscoelastic.h"
 
@@ -53,6 +54,43 @@ void add_fibers(std::vector<MaterialCase>& out) {
   c.material =
       made(isochor::with_stiffness_field(made(isochor::with_fibers(matrix, {a, b})), factor))->distortional();
   c.energy = [=](const Gradient9& F) { return 1.7 * energy(F); };
+  out.push_back(c);
+}
+
+// Fibers in all directions, as the families that stand for them.
+void add_spread_fibers(std::vector<MaterialCase>& out) {
+  constexpr double b = 0.7, k1 = 0.8, k2 = 0.3;
+  isochor::FiberFamily family;
+  family.direction = {1, 2, 2};
+  family.k1 = k1;
+  family.k2 = k2;
+  family.exponent = 4;
+  isochor::FiberSpread spread;
+  spread.concentration = b;
+  spread.rings = 3;
+  spread.around = 5;
+  const auto families = isochor::spread_fibers(family, spread);
+  if (!families) throw std::runtime_error(families.error());
+  MaterialCase c;
+  c.name = "neo_hookean with fibers in all directions";
+  c.covers = {"materials/fiber_spread"};
+  c.material =
+      made(isochor::with_fibers(made(isochor::neo_hookean(constants())), families.value()))->distortional();
+  // The formula of single fibers, for the directions and stiffnesses that the quadrature has; that these are
+  // those of the distribution is a matter of tests/unit/fiber_fields.cpp.
+  c.energy = [all = families.value()](const Gradient9& F) {
+    HyperDual sum = 0.5 * kMu * (trace_C(F) - 3.0) - kMu * log(determinant(F));
+    for (const isochor::FiberFamily& f : all) {
+      const double v[3] = {f.direction.x, f.direction.y, f.direction.z};
+      HyperDual along;
+      for (std::size_t i = 0; i < 3; ++i)
+        along += square(F[3 * i] * v[0] + F[3 * i + 1] * v[1] + F[3 * i + 2] * v[2]);
+      const HyperDual E = along - 1.0;
+      if (E.a > 0) sum += f.k1 / (4 * k2) * (exp(k2 * square(square(E))) - 1.0);
+    }
+    return sum;
+  };
+  c.isotropic = false;
   out.push_back(c);
 }
 
@@ -426,6 +464,7 @@ void add_mullins(std::vector<MaterialCase>& out) {
 
 void add_material_additions(std::vector<MaterialCase>& out) {
   add_fibers(out);
+  add_spread_fibers(out);
   add_isochoric_fibers(out);
   add_compression_penalty(out);
   add_viscoelastic(out);

@@ -69,7 +69,7 @@ TEST_CASE("thin bodies that cannot be are refused with place and remedy") {
   CHECK_THAT(outcome(sheet(R"("mesh": {"box": {"cell_type": "tri3"}})", kShell)),
              ContainsSubstring("no axis has the same lower and upper corner"));
   CHECK_THAT(outcome(sheet(R"("mesh": {"file": "none.stl"})", kShell)), ContainsSubstring("none.stl"));
-  CHECK_THAT(outcome(sheet(kBox + R"(, "refine": 1)", kShell)), ContainsSubstring("mesh the surface finer"));
+  CHECK(outcome(sheet(kBox + R"(, "refine": 1)", kShell)) == "built");
   std::string solid = sheet(kBox, kShell);
   solid.replace(solid.find("\"tri3\""), 6, "\"tet4\"");
   CHECK_THAT(outcome(solid), ContainsSubstring("materials is empty"));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "engine/base/base.h"
 #include "isochor/mesh_select.h"
 #include "support/worlds.h"
 
@@ -212,4 +213,53 @@ TEST_CASE("a cavity over an open patch points to pressures, and its cap to what 
   CHECK_THAT(draft(false), ContainsSubstring("pressure") && ContainsSubstring("traction") &&
                                ContainsSubstring("cap_free_openings"));
   CHECK_THAT(draft(true), ContainsSubstring("cancels the load") && ContainsSubstring("0.0016 m^2"));
+}
+
+TEST_CASE("a pressure with a profile of one is the pressure, on open and on closed faces") {
+  for (const Element element : {Element::tet4, Element::tet4_edge_smoothed, Element::tet10, Element::hex8}) {
+    for (const bool lagged : {false, true}) {
+      const double amount = lagged ? 3e3 : 2e4;
+      Pressed plain(slab(element), element, amount, lagged), varying(slab(element), element, amount, lagged);
+      PressureDef def;
+      def.body = varying.body;
+      def.surfaces = {"z1"};
+      def.amount = Curve::ramp(amount);
+      def.lagged = lagged;
+      def.profile = "1 + 0*x";
+      value(varying.world.replace(varying.load, pressure(def)));
+      plain.solve();
+      varying.solve();
+      INFO(name_of(element) << (lagged ? ", lagged" : ""));
+      // Unsymmetric systems converge as Newton's method does.
+      if (!lagged) CHECK(varying.report.iterations <= plain.report.iterations + 2);
+      double worst = 0;
+      for (std::size_t i = 0; i < plain.world.positions(plain.body).size(); ++i)
+        worst = std::max(
+            worst, norm(plain.world.positions(plain.body)[i] - varying.world.positions(varying.body)[i]));
+      CHECK(worst < 1e-8 * 0.04);
+    }
+  }
+}
+
+TEST_CASE("a pressure that varies in space and time has the resultant of its integral") {
+  // Over the flat top of a stiff slab, a by b: the integral of 1 + x/a is 1.5 a b; times 1 + t.
+  for (const Element element : {Element::tet4, Element::tet10, Element::hex8}) {
+    World world = make_world(static_options());
+    const BodyId body = add_body(world, slab(element), element, neo_hookean(1e11, 0.3));
+    const EffectId base = hold(world, body, {"z0"});
+    PressureDef def;
+    def.body = body;
+    def.surfaces = {"z1"};
+    def.amount = Curve::constant(1e3);
+    def.profile = "(1 + t) * (1 + x/0.04)";
+    value(world.add(pressure(def)));
+    for (const double t : {0.5, 1.0}) {
+      must_advance(world, 0.5);
+      const double force = 1e3 * (1 + t) * 1.5 * 0.04 * 0.04;
+      INFO(name_of(element) << ", t " << t);
+      CHECK(world.reaction(base)[0].z == Approx(force).epsilon(1e-6));
+      // About the origin: the integral of -x p, p = 1 + x/a, is -(a^2/2 + a^2/3) b.
+      CHECK(world.reaction(base)[1].y == Approx(-1e3 * (1 + t) * 0.04 * 0.04 * 0.04 * 5 / 6).epsilon(1e-5));
+    }
+  }
 }

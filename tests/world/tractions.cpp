@@ -1,6 +1,7 @@
 // Tractions per area as it is, and such that vary over a surface.
 #include <cmath>
 
+#include "engine/base/base.h"
 #include "numbers/cube.h"
 
 using namespace isochor;
@@ -90,6 +91,82 @@ TEST_CASE("a field scales a traction over its surface, in sum and moment") {
   }
 }
 
+TEST_CASE("a profile in space and time scales a traction, in sum and moment, at every time") {
+  // (1 + t) (2 - z) over the unit square: force 1.5 (1 + t), about z = 0 the moment 2/3 (1 + t).
+  for (const Element element : kElements) {
+    for (const bool current : {false, true}) {
+      World world = test::make_world(test::static_options());
+      const Mesh mesh = test::block({0, 0, 0}, {1, 1, 1}, {2, 2, 2}, cells_of(element));
+      const BodyId body = test::add_body(world, mesh, element, test::neo_hookean(1e9, 0.3));
+      const EffectId foot = test::hold(world, body, {"x0"});
+      TractionDef def;
+      def.body = body;
+      def.surface = "x1";
+      def.traction = {10, 0, 0};
+      def.profile = "(1 + t) * (2 - z)";
+      def.current_area = current;
+      value(world.add(traction(def)));
+      for (const double t : {0.25, 0.5, 1.0}) {
+        test::must_advance(world, t - world.time());
+        INFO(test::name_of(element) << (current ? ", current area" : "") << ", t " << t);
+        CHECK(world.reaction(foot)[0].x == Approx(-15 * (1 + t)).epsilon(1e-6));
+        CHECK(world.reaction(foot)[1].y == Approx(-20.0 / 3 * (1 + t)).epsilon(1e-6));
+      }
+    }
+  }
+}
+
+TEST_CASE("a profile and a field of the same values are the same load, and multiply") {
+  Mesh mesh = test::uneven_cube();
+  MeshField paint;
+  paint.name = "paint";
+  for (const Vec3& X : mesh.nodes) paint.values.push_back(1 + X.y * X.z);
+  mesh.fields.push_back(paint);
+  const auto run = [&](const std::string& field, const std::string& profile) {
+    World world = test::make_world(test::static_options());
+    const BodyId body = test::add_body(world, mesh, Element::tet4, test::neo_hookean(1e5, 0.4));
+    test::hold(world, body, {"x0"});
+    TractionDef def;
+    def.body = body;
+    def.surface = "x1";
+    def.traction = {1e3, 2e3, 0};
+    def.field = field;
+    def.profile = profile;
+    value(world.add(traction(def)));
+    test::must_advance(world);
+    return std::vector<Vec3>(world.positions(body).begin(), world.positions(body).end());
+  };
+  const auto by_field = run("paint", "");
+  const auto by_profile = run("", "1 + y*z"), both = run("paint", "1 + 0*t");
+  for (std::size_t i = 0; i < by_field.size(); ++i) {
+    CHECK(norm(by_field[i] - by_profile[i]) < 1e-12);
+    CHECK(norm(by_field[i] - both[i]) < 1e-12);
+  }
+}
+
+TEST_CASE("a profile without a value stops the step and leaves the state") {
+  World world = test::make_world(test::static_options());
+  const BodyId body = test::add_body(world, test::uneven_cube(), Element::tet4, test::neo_hookean(1e5, 0.4));
+  test::hold(world, body, {"x0"});
+  TractionDef def;
+  def.body = body;
+  def.surface = "x1";
+  def.traction = {1e3, 0, 0};
+  for (const bool current : {false, true}) {
+    def.current_area = current;
+    def.name = current ? "second" : "first";
+    def.profile = "sqrt(0.5 - t)";
+    const EffectId id = value(world.add(traction(def)));
+    test::must_advance(world, 0.25);
+    const auto hash = world.state_hash();
+    const double before = world.time();
+    CHECK(world.step(10).status == StepStatus::rejected);
+    CHECK(world.state_hash() == hash);
+    CHECK(world.time() == before);
+    value(world.remove(id));
+  }
+}
+
 TEST_CASE("tractions refuse what they cannot mean, by name") {
   const auto says = [](const TractionDef& def, const std::string& what) {
     const std::string text = refusal(def);
@@ -101,13 +178,18 @@ TEST_CASE("tractions refuse what they cannot mean, by name") {
   def.surface = "x1";
   def.total_force = {1, 0, 0};
   def.current_area = true;
-  says(def, "a total_force has no current_area and no field");
+  says(def, "a total_force has no current_area and no field or profile");
   def.total_force = {};
   def.traction = {1, 0, 0};
   CHECK(refusal(def).empty());
   def.field = "paint";
   says(def, "field \"paint\" is none of the nodes of the mesh");
   def.field.clear();
+  def.profile = "2 + r";
+  says(def, "profile = \"2 + r\": \"r\" is not known");
+  def.profile = "1/x - 1/(x - 1)";
+  says(def, "is no finite number at (1, ");
+  def.profile.clear();
   def.current_area = false;
   def.lagged = true;
   says(def, "lagged is for current_area");

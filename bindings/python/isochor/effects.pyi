@@ -22,7 +22,9 @@ _Zone = TypedDict("_Zone", {"name": str, "regions": _Names, "cells": ArrayLike, 
 _Rotation = TypedDict("_Rotation", {"point": ArrayLike, "axis": ArrayLike, "angle": float, "angle_deg": float}, total=False)
 _Keyframe = TypedDict("_Keyframe", {"t": float, "position": ArrayLike, "turn": ArrayLike}, total=False)
 _SkinBone = TypedDict("_SkinBone", {"motion": str, "keyframes": Sequence["_Keyframe"], "weights": ArrayLike, "field": str}, total=False)
+_Prestretch = TypedDict("_Prestretch", {"along": float, "across": float, "direction": ArrayLike}, total=False)
 _Rim = TypedDict("_Rim", {"surfaces": _Names, "node_sets": _Names, "nodes": ArrayLike, "boxes": ArrayLike, "everything": bool}, total=False)
+_SheetFibers = TypedDict("_SheetFibers", {"direction": ArrayLike, "directions": ArrayLike, "law": Literal["exponential", "toe"], "k1": float, "k2": float, "dispersion": float, "exponent": float, "isochoric": bool, "straight_modulus": float, "straight_stretch": float}, total=False)
 _Term = TypedDict("_Term", {"body": str, "point": ArrayLike, "direction": ArrayLike, "weight": float}, total=False)
 _Obstacle = TypedDict("_Obstacle", {"shape": Literal["plane", "sphere", "capsule", "cylinder", "box", "mesh", "distance_field"], "position": ArrayLike, "axis": ArrayLike, "side": ArrayLike, "radius": float, "length": float, "size": ArrayLike, "rounding": float, "file": str, "scale": float, "spacing": float, "motion": str, "keyframes": Sequence["_Keyframe"]}, total=False)
 
@@ -281,6 +283,7 @@ def traction(
     traction: ArrayLike = ...,
     total_force: ArrayLike = ...,
     field: Union[str, None] = ...,
+    profile: Union[str, None] = ...,
     current_area: bool = ...,
     lagged: bool = ...,
     amount: _Amount = ...,
@@ -301,6 +304,8 @@ def traction(
         [N] instead of traction (default: [0, 0, 0])
     field:
         of the mesh at nodes with one component: factors on the traction
+    profile:
+        a factor in space and time: a formula of x, y, z (at rest) and t, see profiles
     current_area:
         per area as it is, not at rest (default: false)
     lagged:
@@ -319,6 +324,8 @@ def pressure(
     name: Union[str, None] = ...,
     surfaces: Union[_Names, None] = ...,
     amount: Union[_Amount, None] = ...,
+    field: Union[str, None] = ...,
+    profile: Union[str, None] = ...,
     lagged: bool = ...,
 ) -> Effect:
     """Pressure that follows any faces of the boundary, open or closed, see pressure.
@@ -333,6 +340,10 @@ def pressure(
         of the mesh or of the body
     amount:
         [Pa] positive pushes inward (default: 0, or 1 where it is a ratio or what was supplied)
+    field:
+        of the mesh at nodes with one component: factors on the pressure
+    profile:
+        a factor in space and time: a formula of x, y, z (at rest) and t, see profiles
     lagged:
         hold what a free rim adds within an iteration: symmetric systems, linear convergence (default: false)
 
@@ -503,6 +514,8 @@ def membrane(
     young: Union[float, None] = ...,
     poisson: float = ...,
     thickness: Union[float, None] = ...,
+    prestretch: Union["_Prestretch", None] = ...,
+    amount: _Amount = ...,
 ) -> Effect:
     """A neo-Hookean membrane in plane stress, see epidermis.
 
@@ -520,6 +533,10 @@ def membrane(
         of the membrane; >= 0, <= 0.5 (default: 0.5)
     thickness:
         [m] of the membrane; > 0
+    prestretch:
+        how much it is stretched where the body is at rest
+    amount:
+        of the prestretch: stretches are 1 + amount (stretch - 1) (default: 1)
 
     Amounts are numbers, or points [(time, value), ...] in between which they are linear. Returns an
     Effect for ``World.add``. Raises isochor.Error for keys that there are not; values are looked at when
@@ -538,6 +555,10 @@ def shell(
     bending: float = ...,
     clamped: Union["_Rim", None] = ...,
     flat: bool = ...,
+    prestretch: Union["_Prestretch", None] = ...,
+    amount: _Amount = ...,
+    fibers: Union[Sequence["_SheetFibers"], None] = ...,
+    fiber_field: Union[str, None] = ...,
 ) -> Effect:
     """A thin sheet that stretches, shears and bends, see shells: what a thin body is made of, or a layer on a solid one.
 
@@ -563,6 +584,14 @@ def shell(
         edges at the rim with both ends there keep the direction in which the sheet leaves them; supports hold nodes
     flat:
         free of bending when flat, not as the mesh has it (default: false)
+    prestretch:
+        how much it is stretched where the body is at rest
+    amount:
+        of the prestretch: stretches are 1 + amount (stretch - 1) (default: 1)
+    fibers:
+        that only pull, in the plane of the sheet
+    fiber_field:
+        their directions: a field of the mesh in cells with three components
 
     Amounts are numbers, or points [(time, value), ...] in between which they are linear. Returns an
     Effect for ``World.add``. Raises isochor.Error for keys that there are not; values are looked at when

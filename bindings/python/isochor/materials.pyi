@@ -19,7 +19,8 @@ class Material:
 _OgdenTerm = TypedDict("_OgdenTerm", {"mu": float, "alpha": float}, total=False)
 _PronyTerm = TypedDict("_PronyTerm", {"ratio": float, "time": float}, total=False)
 _Mullins = TypedDict("_Mullins", {"r": float, "m": float, "beta": float}, total=False)
-_Fibers = TypedDict("_Fibers", {"direction": ArrayLike, "directions": ArrayLike, "field": str, "law": Literal["exponential", "toe"], "k1": float, "k2": float, "dispersion": float, "exponent": float, "isochoric": bool, "straight_modulus": float, "straight_stretch": float}, total=False)
+_FiberSpread = TypedDict("_FiberSpread", {"concentration": float, "rings": int, "around": int}, total=False)
+_Fibers = TypedDict("_Fibers", {"direction": ArrayLike, "directions": ArrayLike, "field": str, "spread": "_FiberSpread", "law": Literal["exponential", "toe"], "k1": float, "k2": float, "dispersion": float, "exponent": float, "isochoric": bool, "straight_modulus": float, "straight_stretch": float}, total=False)
 _CompressionPenalty = TypedDict("_CompressionPenalty", {"modulus": float, "beta": float}, total=False)
 _CellField = TypedDict("_CellField", {"values": ArrayLike, "file": str}, total=False)
 

@@ -10,6 +10,7 @@
 #include "scene_runs.h"
 #include "scenes/library.h"
 #include "scenes/scene_file.h"
+#include "scenes/schedule.h"
 
 namespace isochor::python {
 
@@ -188,6 +189,7 @@ py::tuple world_of(const SceneDef& scene, int threads) {
   if (threads < 0)
     throw Refused("Scene.world: threads = " + std::to_string(threads) +
                   "; give a positive number, or 0 for all");
+  if (auto r = no_schedule(scene, "a world of a scene"); !r) throw Refused(r.error());
   LogLines log;
   SceneDef logged = scene;
   logged.analysis.options.log = log.writer();

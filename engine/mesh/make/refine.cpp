@@ -1,4 +1,4 @@
-// Uniform refinement: every cell into eight of its own shape.
+// Uniform refinement: every cell into eight of its own shape, triangles into four.
 #include <cmath>
 #include <limits>
 
@@ -65,18 +65,25 @@ Template hex_template() {
   return t;
 }
 
+TriangleChildren four_triangles() {
+  return {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+}
+
+// Of triangles four.
 class EightChildren : public Cuts {
  public:
   explicit EightChildren(const Mesh& mesh) : mesh_(mesh) {
     if (mesh.cell_type == CellType::hex8)
       all_.push_back(hex_template());
+    else if (mesh.cell_type == CellType::tri3)
+      all_.push_back(triangle_template(four_triangles()));
     else
       for (const Diagonal& d : kDiagonals)
         all_.push_back(tet_template(mesh.cell_type == CellType::tet10, children_around(d)));
   }
 
   const Template& of(const Index* cell) const override {
-    if (mesh_.cell_type == CellType::hex8) return all_[0];
+    if (all_.size() == 1) return all_[0];
     // The shortest diagonal leaves the children in the best shape. Lengths that differ by rounding alone are
     // equal, so that the choice depends on the shape of a cell and on nothing else.
     std::size_t best = 0;
@@ -91,9 +98,7 @@ class EightChildren : public Cuts {
     return all_[best];
   }
 
-  TriangleChildren of_triangle(const Index*) const override {
-    return {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
-  }
+  TriangleChildren of_triangle(const Index*) const override { return four_triangles(); }
 
  private:
   Vec3 middle_of(const Index* cell, std::size_t node) const {
@@ -114,10 +119,7 @@ Result<Mesh> refine_mesh(const Mesh& mesh, int levels) {
                       ", each makes eight cells of one")};
   }
   if (auto r = check_arrays(mesh); !r) return r.failure();
-  if (levels > 0 && mesh.cell_type == CellType::tri3)
-    return Error{
-        join("refine = ", levels, ": meshes of triangles are not refined here; mesh the surface finer")};
-  const double cells = std::pow(8.0, levels) * mesh.cell_count();
+  const double cells = std::pow(mesh.cell_type == CellType::tri3 ? 4.0 : 8.0, levels) * mesh.cell_count();
   if (const auto why = too_large_for_memory(cells, mesh.cell_type, MeshUse::check);
       levels > 0 && !why.empty())
     return Error{join("refined ", levels, " times, ", why), ErrorKind::no_memory};

@@ -1,5 +1,5 @@
-// Local refinement of tets by longest-edge bisection (Rivara; in three dimensions Plaza & Carey 2000, "Local
-// refinement of simplicial grids based on the skeleton", Applied Numerical Mathematics 32).
+// Local refinement of tets and triangles by longest-edge bisection (Rivara; in three dimensions Plaza & Carey
+// 2000, "Local refinement of simplicial grids based on the skeleton", Applied Numerical Mathematics 32).
 //
 // 1. All edges of the cells to refine are marked.
 // 2. Where an edge of a cell or of a face is marked, so is its longest one, until nothing changes. The
@@ -62,7 +62,9 @@ class Bisections : public Cuts {
   using Ends = std::array<Index, 2>;
   static Ends ends(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
   const Index* corners(std::size_t cell) const { return mesh_.cells.data() + cell * per_; }
-  std::array<Index, 6> edges_of(std::size_t cell) const;
+  std::span<const Index> edges_of(std::size_t cell) const {
+    return std::span(of_cell_).subspan(shape_.size() * cell, shape_.size());
+  }
   Index number_of(const Ends& e) const;
   bool mark_longest(std::span<const Index> edges);
   void close();
@@ -71,7 +73,8 @@ class Bisections : public Cuts {
 
   const Mesh& mesh_;
   std::size_t per_;
-  std::vector<Ends> edge_;  // the longest first
+  std::span<const Edge> shape_;  // edges of a cell by its corners
+  std::vector<Ends> edge_;       // the longest first
   std::vector<Index> of_cell_;
   std::vector<std::uint8_t> marked_;
   std::unordered_map<std::uint64_t, Index> number_;
@@ -83,9 +86,11 @@ std::uint64_t packed(const std::array<Index, 2>& e) {
 }
 
 Bisections::Bisections(const Mesh& mesh, std::span<const Index> cells)
-    : mesh_(mesh), per_(static_cast<std::size_t>(nodes_per_cell(mesh.cell_type))) {
+    : mesh_(mesh),
+      per_(static_cast<std::size_t>(nodes_per_cell(mesh.cell_type))),
+      shape_(mesh.cell_type == CellType::tri3 ? std::span<const Edge>(kTriangleEdges) : kTetEdges) {
   for (std::size_t c = 0; c < at(mesh.cell_count()); ++c) {
-    for (const Edge& e : kTetEdges) edge_.push_back(ends(corners(c)[e[0]], corners(c)[e[1]]));
+    for (const Edge& e : shape_) edge_.push_back(ends(corners(c)[e[0]], corners(c)[e[1]]));
   }
   std::vector<Ends> all = edge_;
   const auto length2 = [&](const Ends& e) {
@@ -107,12 +112,6 @@ Bisections::Bisections(const Mesh& mesh, std::span<const Index> cells)
   close();
 }
 
-std::array<Index, 6> Bisections::edges_of(std::size_t cell) const {
-  std::array<Index, 6> out{};
-  std::copy_n(of_cell_.begin() + static_cast<std::ptrdiff_t>(6 * cell), 6, out.begin());
-  return out;
-}
-
 Index Bisections::number_of(const Ends& e) const {
   const auto found = number_.find(packed(e));
   return found == number_.end() ? -1 : found->second;
@@ -132,7 +131,8 @@ void Bisections::close() {
     changed = false;
     for (std::size_t c = 0; c < at(mesh_.cell_count()); ++c) {
       const auto all = edges_of(c);
-      for (const auto& face : kFaceEdges) {
+      for (std::size_t f = 0; all.size() == kTetShape.edges && f < kFaceEdges.size(); ++f) {
+        const auto& face = kFaceEdges[f];
         const std::array<Index, 3> three{all[face[0]], all[face[1]], all[face[2]]};
         changed = mark_longest(three) || changed;
       }
@@ -154,11 +154,14 @@ std::vector<std::uint8_t> Bisections::cut_edges(const Index* corner, std::span<c
 }
 
 const Template& Bisections::of(const Index* cell) const {
-  const auto cut = cut_edges(cell, kTetEdges);
+  const auto cut = cut_edges(cell, shape_);
   std::uint32_t key = 1;
   for (const std::uint8_t e : cut) key = 8 * key + e;
   const auto [it, fresh] = templates_.try_emplace(key);
-  if (fresh) it->second = tet_template(mesh_.cell_type == CellType::tet10, bisected<4>(kTetEdges, cut));
+  if (fresh && shape_.size() == kTriangleEdges.size())
+    it->second = triangle_template(bisected<3>(kTriangleEdges, cut));
+  else if (fresh)
+    it->second = tet_template(mesh_.cell_type == CellType::tet10, bisected<4>(kTetEdges, cut));
   return it->second;
 }
 
@@ -176,8 +179,6 @@ double Bisections::cells() const {
 }  // namespace
 
 Result<RefinedMesh> refine_cells(const Mesh& mesh, std::span<const Index> cells) {
-  if (mesh.cell_type == CellType::tri3)
-    return Error{"triangles are not refined cell by cell; mesh the surface finer where it counts"};
   if (mesh.cell_type == CellType::hex8) {
     return Error{
         "hexahedra are not refined cell by cell, for their neighbors would have nodes in the middle of "

@@ -82,6 +82,30 @@ Template tet_template(bool quadratic, const TetChildren& children) {
   return t;
 }
 
+Template triangle_template(const TriangleChildren& children) {
+  Template t;
+  std::array<std::size_t, 6> place{};
+  place.fill(6);
+  for (const auto& child : children) {
+    for (const std::size_t c : child) {
+      if (place[c] == 6) {
+        place[c] = t.points.size();
+        Point p;
+        if (c < 3) {
+          p.node = static_cast<int>(c);
+        } else {
+          const auto a = static_cast<int>(c - 3), b = static_cast<int>((c - 2) % 3);
+          p.corner = {a, a, b, b};
+          p.weights = {{static_cast<std::size_t>(a), 0.5}, {static_cast<std::size_t>(b), 0.5}};
+        }
+        t.points.push_back(std::move(p));
+      }
+      t.children.push_back(place[c]);
+    }
+  }
+  return t;
+}
+
 namespace {
 
 // One level.
@@ -98,6 +122,7 @@ class Refinement {
   std::vector<Key> children_of_face(const Index* face) const;
   Index find(const Key& key) const;
   void mark_surface();
+  void mark_rim();
   Result<void> cut_surfaces();
   void extend_node_sets();
   void extend_fields();
@@ -194,8 +219,25 @@ Index Refinement::find(const Key& key) const {
   return found == known_.end() ? -1 : found->second;
 }
 
+// Of triangles: nodes of edges that one of them alone has.
+void Refinement::mark_rim() {
+  std::unordered_map<Key, int, KeyHash> faces;
+  const auto middle_of = [](Index a, Index b) {
+    return Key{std::min(a, b), std::min(a, b), std::max(a, b), std::max(a, b)};
+  };
+  for (std::size_t k = 0; k < in_.cells.size(); ++k)
+    ++faces[middle_of(in_.cells[k], in_.cells[k % 3 < 2 ? k + 1 : k - 2])];
+  on_surface_.assign(out_.nodes.size(), false);
+  for (const auto& [edge, count] : faces) {
+    if (count > 1) continue;
+    on_surface_[at(edge[0])] = on_surface_[at(edge[3])] = true;
+    if (const Index middle = find(edge); middle >= 0) on_surface_[at(middle)] = true;
+  }
+}
+
 // Nodes of faces that one cell alone has.
 void Refinement::mark_surface() {
+  if (in_.cell_type == CellType::tri3) return mark_rim();
   const CellShape& shape = cell_shape(in_.cell_type);
   struct Side {
     Key sorted{}, face{};

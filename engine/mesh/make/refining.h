@@ -45,6 +45,7 @@ struct Template {
 using TetChildren = std::vector<std::array<std::size_t, 4>>;
 using TriangleChildren = std::vector<std::array<std::size_t, 3>>;
 Template tet_template(bool quadratic, const TetChildren& children);
+Template triangle_template(const TriangleChildren& children);  // of a cell that is a triangle
 
 // Which children cells and faces get. Faces that cells share must get the same from all of them.
 class Cuts {

@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "isochor/curves.h"
 #include "isochor/effects/effect.h"
 #include "isochor/export.h"
 #include "isochor/ids.h"
+#include "isochor/materials.h"
 #include "isochor/selection.h"
 
 namespace isochor {
@@ -26,6 +28,13 @@ struct EpidermisDef {
 };
 ISOCHOR_API EffectPtr epidermis(EpidermisDef def);
 
+// How much a sheet is stretched where the body is at rest: seen from the sheet without stress. A sheet that
+// was pulled before it was bonded has stretches above 1, one that swells below.
+struct Prestretch {
+  double along = 1, across = 1;
+  Vec3 direction{1, 0, 0};  // projected into each face; of no matter where both stretches are the same
+};
+
 // A neo-Hookean membrane on surfaces, in plane stress: stretch and shear, no bending and no mass.
 struct MembraneDef {
   std::string name = "membrane";
@@ -33,7 +42,9 @@ struct MembraneDef {
   std::vector<std::string> surfaces;
   double young = 0;      // [Pa]
   double poisson = 0.5;  // [0, 0.5]
-  double thickness = 0;  // [m]
+  double thickness = 0;  // without stress [m]
+  Prestretch prestretch;
+  Curve amount = Curve::constant(1);  // of the prestretch: stretches are 1 + amount (stretch - 1)
 };
 ISOCHOR_API EffectPtr membrane(MembraneDef def);
 
@@ -54,6 +65,13 @@ struct ShellDef {
   // clamps, and planes of symmetry. Nodes (of the same body) are held by supports.
   Selection clamped;
   bool flat = false;  // free of bending when flat, not as the mesh has it
+  Prestretch prestretch;
+  Curve amount = Curve::constant(1);  // as of a membrane
+  // That only pull, in the middle of the sheet, their directions projected into each triangle. `directions`
+  // are one a cell of a thin body. No dispersion; k1 and straight_modulus are those of the sheet, fibers and
+  // what holds them together.
+  std::vector<FiberFamily> fibers;
+  std::string fiber_field;  // their directions: a field of the mesh in cells with three components
 };
 ISOCHOR_API EffectPtr shell(ShellDef def);
 

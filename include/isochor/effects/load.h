@@ -23,6 +23,10 @@ struct TractionDef {
   Curve amount = Curve::constant(1);
   // A field of the mesh at nodes with one component: factors on the traction over the surface.
   std::string field;
+  // A factor in space and time on top, an expression in x, y, z [m] at rest and t [s] (statics: load factor):
+  // "sin(2*pi*t) * (1 - x/0.1)". Functions: abs, sqrt, exp, log, sin, cos, tan, tanh, atan2, min, max,
+  // step(v): 1 for v >= 0, else 0. Taken at nodes, and between them as the shape functions have it.
+  std::string profile;
   // Per area as it is: the force grows with the surface. Such a load has no potential, so that linear systems
   // are unsymmetric; `lagged` as of a pressure.
   bool current_area = false, lagged = false;
@@ -41,6 +45,9 @@ struct PressureDef {
   // True: what the rim adds is held within an iteration, so that they stay symmetric, and convergence is
   // linear there. Needed by continuation(), by the iterative solver and by methods of dual problems.
   bool lagged = false;
+  // Factors on the amount, as of a traction: a field of the mesh at nodes, an expression. A pressure that
+  // varies has no potential, so that linear systems are unsymmetric; `lagged` as at a free rim.
+  std::string field, profile;
 };
 ISOCHOR_API EffectPtr pressure(PressureDef def);
 

@@ -19,6 +19,21 @@ inline Result<const MeshField*> cell_field(const Mesh& mesh, const std::string& 
                (known.empty() ? "none" : known)};
 }
 
+// One vector a cell from such a field.
+inline Result<std::vector<Vec3>> cell_directions(const Mesh& mesh, const std::string& name) {
+  auto found = cell_field(mesh, name);
+  if (!found) return found.failure();
+  const MeshField& field = *found.value();
+  if (field.components != 3) {
+    return Error{"field \"" + name + "\" has " + std::to_string(field.components) +
+                 " components; directions have three"};
+  }
+  std::vector<Vec3> out;
+  for (std::size_t c = 0; c + 2 < field.values.size(); c += 3)
+    out.push_back({field.values[c], field.values[c + 1], field.values[c + 2]});
+  return out;
+}
+
 // Refused where a list is not one entry a cell.
 inline Result<void> check_cells(const Mesh& mesh, const char* what, std::size_t count) {
   if (count == at(mesh.cell_count())) return {};
