@@ -9,6 +9,13 @@ namespace isochor {
 
 using Matrix = StressMatrix;
 
+// What Cauchy stresses are divided by. A law that lives through inversion may leave a cell without any
+// volume, where they have no value: theirs is then that of the least volume that rounding leaves.
+static double divisor(double J) {
+  constexpr double least = 1e-15;
+  return std::abs(J) < least ? std::copysign(least, J) : J;
+}
+
 PointState point_state(const SolidPool& pool, const Material* energy, Index stencil, Index element, int q,
                        const RecoveryInput& in, const GrownState* grown, double kept) {
   PointState p;
@@ -34,7 +41,7 @@ PointState point_state(const SolidPool& pool, const Material* energy, Index sten
   energy->evaluate(Want::gradient, batch, response);
   Matrix P;
   for (int i = 0; i < 9; ++i) P(i / 3, i % 3) = response.P[i][0];
-  p.stress = P * p.elastic.transpose() / p.elastic_J;
+  p.stress = P * p.elastic.transpose() / divisor(p.elastic_J);
   return p;
 }
 
@@ -53,7 +60,7 @@ Matrix memory_stress(const RecoveryInput& in, const RegionData& region, Index st
     branch.stress(stencil, q, in.x, in.parts.rest, in.memory[at(m)], share);
     P += Eigen::Map<const Matrix>(share);
   }
-  return P * p.F.transpose() / p.J;
+  return P * p.F.transpose() / divisor(p.J);
 }
 
 namespace {
@@ -74,7 +81,7 @@ double pressure_of(const RecoveryInput& in, Index pool, VolumeStrain strain, Ind
   const double multiplier = multiplier_at(in, pool, stencil, q) / (grown ? std::sqrt(grown->J) : 1);
   if (!has_logarithm(strain)) return multiplier;
   const auto& solid = static_cast<const SolidPool&>(*in.parts.stencil_pools[at(pool)]);
-  if (strain == VolumeStrain::logarithmic) return multiplier / J;
+  if (strain == VolumeStrain::logarithmic) return multiplier / divisor(J);
   double d = J - 1;
   if (is_of_mean(strain)) {
     d = solid.mean_volume_strain(stencil, in.x, in.parts.rest);

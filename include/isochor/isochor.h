@@ -445,7 +445,7 @@ enum {
   ISO_OUTPUT_GAUGE = 3,          /* `quantity` of `effect`, as iso_gauge_value() */
   ISO_OUTPUT_REACTION = 4,       /* force . F + moment . M of the reaction (F, M) of `effect` */
   ISO_OUTPUT_ELASTIC_ENERGY = 5, /* of the world [J] */
-  ISO_OUTPUT_ENERGY = 6, /* `quantity` of iso_energies(): "elastic", "gravity", ...; "kinetic" of ways */
+  ISO_OUTPUT_ENERGY = 6, /* `quantity` of iso_energies: "elastic", "gravity", ...; "kinetic" of ways */
   ISO_OUTPUT_SQUARE = 7, /* half the square of (the sum of vector . x over `nodes`, less `target`) */
   ISO_OUTPUT_STRESS = 8, /* `quantity` in `cell` of iso_body_mesh(): "von_mises", "pressure", "xx" ... [Pa] */
   ISO_OUTPUT_EFFECT_FORCE = 9, /* direction . F, what `effect` does to the nodes of `body` in all [N] */

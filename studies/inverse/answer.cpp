@@ -37,6 +37,14 @@ bool changes_count(Kind kind) {
   return kind == Kind::position || kind == Kind::volume || kind == Kind::length;
 }
 
+bool touches(Kind kind) {
+  return kind == Kind::contact || kind == Kind::surface_contact;
+}
+
+bool has_components(Kind kind) {
+  return kind == Kind::position || kind == Kind::force || kind == Kind::moment || touches(kind);
+}
+
 double size_of(const BuiltScene& built) {
   Vec3 lower{HUGE_VAL, HUGE_VAL, HUGE_VAL}, upper = -1.0 * lower;
   for (const BodyId body : built.bodies) {
@@ -75,6 +83,16 @@ Watched::Watched(const SceneDef& scene, const BuiltScene& built, const std::vect
         place.effect = built.ids(cables_kind)[q.of];
         place.effect_name = scene.cables[q.of].name;
         break;
+      case Kind::contact:
+        place.effect = built.ids(contacts_kind)[q.of];
+        place.effect_name = scene.contacts[q.of].name;
+        place.body = built.bodies[static_cast<std::size_t>(scene.contacts[q.of].body)];
+        break;
+      case Kind::surface_contact:
+        place.effect = built.ids(surface_contacts_kind)[q.of];
+        place.effect_name = scene.surface_contacts[q.of].name;
+        place.body = built.bodies[static_cast<std::size_t>(scene.surface_contacts[q.of].body)];
+        break;
       default:
         place.effect = built.ids(dirichlet_kind)[q.of];
     }
@@ -82,24 +100,32 @@ Watched::Watched(const SceneDef& scene, const BuiltScene& built, const std::vect
   }
 }
 
-double Watched::value(const World& world, std::size_t quantity) const {
-  const Place& place = places_[quantity];
+Vec3 Watched::vector(const World& world, const Place& place) const {
   const Kind kind = place.quantity.kind;
-  if (kind == Kind::position) return place.point.at(world.positions(place.body))[place.quantity.component];
-  if (kind == Kind::force || kind == Kind::moment)
-    return world.reaction(place.effect)[kind == Kind::force ? 0 : 1][place.quantity.component];
-  for (const Gauge& gauge : world.gauges()) {
-    if (gauge.effect == place.effect_name && gauge.quantity == gauge_word(kind)) return gauge.value;
+  if (kind == Kind::position) return place.point.at(world.positions(place.body));
+  if (!touches(kind)) return world.reaction(place.effect)[kind == Kind::force ? 0 : 1];
+  return {gauge(world, place, "force_x"), gauge(world, place, "force_y"), gauge(world, place, "force_z")};
+}
+
+double Watched::gauge(const World& world, const Place& place, std::string_view word) {
+  for (const Gauge& one : world.gauges()) {
+    if (one.effect == place.effect_name && one.quantity == word) return one.value;
   }
   return std::numeric_limits<double>::quiet_NaN();
+}
+
+double Watched::value(const World& world, std::size_t quantity) const {
+  const Place& place = places_[quantity];
+  if (has_components(place.quantity.kind)) return vector(world, place)[place.quantity.component];
+  return gauge(world, place, gauge_word(place.quantity.kind));
 }
 
 double Watched::size(const World& world, std::size_t quantity) const {
   const Place& place = places_[quantity];
   const Kind kind = place.quantity.kind;
   if (kind == Kind::position) return length_;
-  if (kind != Kind::force && kind != Kind::moment) return std::abs(value(world, quantity));
-  const Vec3 whole = world.reaction(place.effect)[kind == Kind::force ? 0 : 1];
+  if (!has_components(kind)) return std::abs(value(world, quantity));
+  const Vec3 whole = vector(world, place);
   return std::sqrt(dot(whole, whole));
 }
 
@@ -117,6 +143,9 @@ Output Watched::output(std::size_t quantity) const {
       return Output::reaction(place.effect, axis);
     case Kind::moment:
       return Output::reaction(place.effect, {}, axis);
+    case Kind::contact:
+    case Kind::surface_contact:
+      return Output::effect_force(place.effect, place.body, axis);
     default:
       return Output::gauge(place.effect, gauge_word(place.quantity.kind));
   }

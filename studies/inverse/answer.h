@@ -28,6 +28,10 @@ class Watched {
     EffectId effect{};
     std::string effect_name;
   };
+  // What components are of.
+  Vec3 vector(const World& world, const Place& place) const;
+  static double gauge(const World& world, const Place& place, std::string_view word);
+
   std::vector<Place> places_;
   double length_ = 0;  // of the diagonal of the scene [m]
 };

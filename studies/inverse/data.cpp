@@ -38,6 +38,8 @@ std::string columns_there_are(const SceneDef& scene) {
   add_names(text, scene.cavities, ".volume");
   add_names(text, scene.cables, ".length");
   add_names(text, scene.dirichlet, ".force.x");
+  add_names(text, scene.contacts, ".force.x");
+  add_names(text, scene.surface_contacts, ".force.x");
   return text.empty() ? "none; add a probe to the scene" : text + ", ...";
 }
 
@@ -159,6 +161,8 @@ const char* unit_of(Kind kind) {
       return "Pa";
     case Kind::tension:
     case Kind::force:
+    case Kind::contact:
+    case Kind::surface_contact:
       return "N";
     case Kind::moment:
       return "N m";
@@ -197,9 +201,18 @@ Result<Quantity> quantity_of(const std::string& column, const SceneDef& scene, c
   const auto middle = name.rfind('.');
   const std::string vector = middle == std::string::npos ? "" : name.substr(middle + 1);
   if (vector == "force" || vector == "moment") {
-    const auto found = find(scene.dirichlet, name.substr(0, middle));
+    const std::string of = name.substr(0, middle);
+    if (const auto found = find(scene.dirichlet, of))
+      return Quantity{column, vector == "force" ? Kind::force : Kind::moment, *found, component};
+    if (vector == "moment") return unknown;
+    if (const auto found = find(scene.surface_contacts, of))
+      return Quantity{column, Kind::surface_contact, *found, component};
+    const auto found = find(scene.contacts, of);
     if (!found) return unknown;
-    return Quantity{column, vector == "force" ? Kind::force : Kind::moment, *found, component};
+    if (!scene.contacts[*found].rigid.empty())
+      return Error{who + "column " + quoted(column) +
+                   ": that contact is of a rigid body; name one of a soft body"};
+    return Quantity{column, Kind::contact, *found, component};
   }
   const auto found = find(scene.probes, name);
   if (!found) {

@@ -11,10 +11,20 @@ namespace isochor::inverse {
 
 // A number that a scene shows.
 struct Quantity {
-  enum class Kind : std::uint8_t { position, volume, pressure, length, tension, force, moment };
+  enum class Kind : std::uint8_t {
+    position,
+    volume,
+    pressure,
+    length,
+    tension,
+    force,            // of a support
+    moment,           // of a support
+    contact,          // force of a contact on its body, friction included
+    surface_contact,  // likewise
+  };
   std::string name;  // of its column: "tip.x", "chamber.volume", "wall.force.z"
   Kind kind = Kind::position;
-  std::size_t of = 0;  // in the list of probes, cavities, cables or supports; of a marker the body
+  std::size_t of = 0;  // in the list of probes, cavities, cables, supports or contacts; of a marker the body
   int component = 0;   // of vectors
   std::optional<Vec3> marker = {};  // a material point that is no probe, at rest [m]
 };
@@ -33,10 +43,10 @@ struct Data {
 };
 
 // A CSV file in one of two forms. Columns: "time", and PROBE.x, PROBE.y, PROBE.z [m], CAVITY.volume [m^3],
-// CAVITY.pressure [Pa], CABLE.length [m], CABLE.tension [N], SUPPORT.force.x [N], SUPPORT.moment.x [N m];
-// an empty cell was not measured. Markers: columns "time", "X", "Y", "Z" (where the point is at rest), "x",
-// "y", "z" (where it was seen), and "body" where the scene has several; a line a marker and time. Errors name
-// file, line and remedy.
+// CAVITY.pressure [Pa], CABLE.length [m], CABLE.tension [N], SUPPORT.force.x [N], SUPPORT.moment.x [N m],
+// CONTACT.force.x [N]; an empty cell was not measured. Markers: columns "time", "X", "Y", "Z" (where the
+// point is at rest), "x", "y", "z" (where it was seen), and "body" where the scene has several; a line a
+// marker and time. Errors name file, line and remedy.
 Result<Data> read_data(const std::string& path, const SceneDef& scene);
 Result<Data> parse_data(const std::string& text, const std::string& source, const SceneDef& scene);
 

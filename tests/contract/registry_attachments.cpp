@@ -116,7 +116,8 @@ void add_chambers(std::vector<SceneCase>& out, Element element) {
     leak.from = def.name;
     leak.conductance = 0.1;
     SceneCase c{"chamber with content, control " + std::to_string(static_cast<int>(control)),
-                {"constraints/cavity", "constraints/chamber_network", "constraints/face_pool"},
+                {"constraints/cavity", "constraints/chamber_caps", "constraints/chamber_network",
+                 "constraints/chamber_surface", "constraints/face_pool"},
                 mapped(hollow_box(true, type), smaller),
                 element,
                 {{"", soft(), 1000}},

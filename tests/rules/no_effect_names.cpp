@@ -25,6 +25,9 @@ const std::set<std::string>
         "shape",   "solid",      "space",     "stiffness",  "strain",   "support", "geometry", "turning",
         "surface", "threads",    "treatment", "tree",       "closed",   "law",     "amount",   "row",
         "linear",  "growth",     "current",   "constraint",  // of systems, of numbers, of memory
+        "load",                                              // of states: what save() wrote
+        "idle",                                              // of rows that no free coordinate enters
+        "fields",                                            // of structs
         "volume",  // the engine's own functions of bodies (SolidPool), which rows of effects are over
         "impact",  "impacts"  // jumps of velocities, whatever makes them
     };

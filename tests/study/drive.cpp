@@ -227,3 +227,46 @@ TEST_CASE("what cannot be driven is refused with file, line and remedy", "[drive
   const SceneDef moving = arm({"analysis.type=dynamic"});
   CHECK_THAT(refusal(drive::drive(moving, {{"a", 0, 1e4, 1}}, targets)), Contains("statics"));
 }
+
+TEST_CASE("two soft fingers close on a ball until they press with the force asked for", "[drive]") {
+  // Bellows of two chambers bend two bars toward each other; friction is part of the way.
+  SceneDef scene = value(parse_scene(R"({
+    "bodies": [
+      {"name": "left", "element": "tet4", "mesh": {"box": {"lower": [-0.032, 0, 0], "upper": [-0.0199, 0.08, 0.01],
+       "divisions": [2, 8, 2]}}, "materials": [{"young": 1e5, "poisson": 0.49}]},
+      {"name": "right", "element": "tet4", "mesh": {"box": {"lower": [0.0199, 0, 0], "upper": [0.032, 0.08, 0.01],
+       "divisions": [2, 8, 2]}}, "materials": [{"young": 1e5, "poisson": 0.49}]}],
+    "analysis": {"steps": 3, "duration": 3},
+    "dirichlet": [{"name": "palm left", "where": {"body": "left", "surfaces": "y0"}},
+                  {"name": "palm right", "where": {"body": "right", "surfaces": "y0"}}],
+    "pressures": [{"name": "close left", "body": "left", "surfaces": "x0", "amount": [[0, 0], [1, 600]]},
+                  {"name": "close right", "body": "right", "surfaces": "x1", "amount": [[0, 0], [1, 600]]}],
+    "contacts": [
+      {"name": "grip left", "body": "left", "surfaces": ["x1"], "friction": 0.3,
+       "initial_overlap": "resolve",
+       "obstacle": {"shape": "sphere", "radius": 0.02, "position": [0, 0.06, 0.005]}},
+      {"name": "grip right", "body": "right", "surfaces": ["x0"], "friction": 0.3,
+       "initial_overlap": "resolve",
+       "obstacle": {"shape": "sphere", "radius": 0.02, "position": [0, 0.06, 0.005]}}]
+  })",
+                                     "grip", "."));
+  const Drive d =
+      driven(scene, {{"close left", 0, 5e3}, {"close right", 0, 5e3}},
+             "time,grip left.force.x,grip right.force.x\n1,-0.02,0.02\n2,-0.05,0.06\n3,-0.1,0.08\n");
+  CHECK(d.reason.empty());
+  REQUIRE(d.steps.size() == 3);
+  CHECK(d.all_reached());
+  const SceneDef again = value(driven_scene(scene, d));
+  RunOptions run;
+  run.threads = 1;
+  const RunResult result = run_scene(again, run);
+  REQUIRE(result.status == RunStatus::converged);
+  const auto grip = [&](const char* name) {
+    for (const Gauge& g : result.records.back().gauges) {
+      if (g.effect == name && g.quantity == "force_x") return g.value;
+    }
+    return 0.0;
+  };
+  CHECK_THAT(grip("grip left"), WithinAbs(-0.1, 1e-4));
+  CHECK_THAT(grip("grip right"), WithinAbs(0.08, 1e-4));
+}
