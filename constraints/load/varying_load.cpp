@@ -6,6 +6,7 @@
 
 #include "constraints/stencil/amount_row.h"
 #include "engine/base/text.h"
+#include "engine/mesh/words.h"
 
 namespace isochor {
 
@@ -159,14 +160,15 @@ Result<LoadedFaces> loaded_faces(const Builder& builder, const BodyData& body,
   for (const Index node : faces) loaded.factor.push_back(factors.value()[at(node - body.first_node)]);
   if (profile.empty()) return loaded;
   auto formula = Expression::parse(profile);
-  if (!formula) return Error{"profile = \"" + profile + "\": " + formula.error()};
+  if (!formula) return Error{"profile = " + mesh_files::quoted(profile) + ": " + formula.error()};
   loaded.profile = std::move(formula).value();
   for (const Index node : faces) {
     const Vec3& X = builder.rest()[at(node)];
     loaded.place.push_back(X);
     if (std::isfinite((*loaded.profile)(X, 0))) continue;
-    return Error{"profile = \"" + profile + "\" is no finite number at (" + number(X.x) + ", " + number(X.y) +
-                 ", " + number(X.z) + ") m and time 0; write it so that it has a value at every node"};
+    return Error{"profile = " + mesh_files::quoted(profile) + " is no finite number at (" + number(X.x) +
+                 ", " + number(X.y) + ", " + number(X.z) +
+                 ") m and time 0; write it so that it has a value at every node"};
   }
   return loaded;
 }

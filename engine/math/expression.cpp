@@ -58,7 +58,8 @@ class Parser {
 
   Result<std::vector<Expression::Action>> parse() {
     sum();
-    if (error_.empty() && skip() != '\0') fail("expected an operator or the end");
+    skip();
+    if (error_.empty() && at_ < text_.size()) fail("expected an operator or the end");
     std::size_t height = 0, most = 0;
     for (const Expression::Action& a : actions_) {
       height += 1 - taken(a.what);
@@ -163,7 +164,7 @@ class Parser {
       if (name == f.name) return call(f);
     }
     at_ = begin;
-    fail("\"" + name +
+    fail(std::string(1, '"').append(name, 0, 40) +
          "\" is not known; there are x, y, z, t, pi, abs, sqrt, exp, log, sin, cos, tan, tanh, step, "
          "min, max and atan2:");
   }

@@ -129,6 +129,7 @@ TEST_CASE("formulas that say nothing are refused with the place", "[unit]") {
   CHECK(refusal("max(1)").find("max takes two arguments") != std::string::npos);
   CHECK(refusal("sin(1, 2)").find("expected \")\"") != std::string::npos);
   CHECK(refusal(".").find("expected a number") != std::string::npos);
+  CHECK(refusal(std::string("x\0y", 3)).find("the end at character 2") != std::string::npos);
   CHECK(refusal("1 $ 2").find("character 3") != std::string::npos);
   CHECK(refusal(std::string(1000, '(')).find("nested too deeply") != std::string::npos);
   CHECK(refusal(std::string(1000, '-') + "1").find("nested too deeply") != std::string::npos);

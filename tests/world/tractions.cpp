@@ -186,7 +186,13 @@ TEST_CASE("tractions refuse what they cannot mean, by name") {
   says(def, "field \"paint\" is none of the nodes of the mesh");
   def.field.clear();
   def.profile = "2 + r";
-  says(def, "profile = \"2 + r\": \"r\" is not known");
+  says(def, "profile = '2 + r': \"r\" is not known");
+  def.profile = std::string(100000, '(') + std::string(100000, 'q');
+  says(def, "nested too deeply");
+  CHECK(refusal(def).size() < 300);
+  def.profile = std::string(100000, 'q');
+  says(def, "is not known");
+  CHECK(refusal(def).size() < 300);
   def.profile = "1/x - 1/(x - 1)";
   says(def, "is no finite number at (1, ");
   def.profile.clear();
