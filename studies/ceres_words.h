@@ -28,4 +28,17 @@ struct StopSearch : ceres::IterationCallback {
   const std::function<bool()>& stop;
 };
 
+// Of small problems that are searched to the last digits.
+inline ceres::Solver::Options to_last_digits(int most_iterations) {
+  ceres::Solver::Options how;
+  how.linear_solver_type = ceres::DENSE_QR;
+  how.max_num_iterations = most_iterations;
+  how.function_tolerance = 1e-15;
+  how.gradient_tolerance = 1e-14;
+  how.parameter_tolerance = 1e-12;
+  how.logging_type = ceres::SILENT;
+  how.num_threads = 1;
+  return how;
+}
+
 }  // namespace isochor::studies

@@ -181,8 +181,7 @@ Result<Morph> Morph::make(const Mesh& mesh, const std::vector<Move>& moves,
       any = true;
     }
     if (!any) {
-      return Error{"design: all of surface \"" + moves[k].surface +
-                   "\" is held, so that it cannot move; hold less"};
+      return Error{"all of surface \"" + moves[k].surface + "\" is held, so that it cannot move; hold less"};
     }
     interior.follow(motion);
     out.motions_.push_back(std::move(motion));

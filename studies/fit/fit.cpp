@@ -125,14 +125,7 @@ Search search_from(const Problem& problem, const Law& law, const Values& unit, c
     if (std::isfinite(most)) least_squares.SetParameterUpperBound(out.x.data(), at, most);
   }
   studies::StopSearch stop(options.stop);
-  ceres::Solver::Options how;
-  how.linear_solver_type = ceres::DENSE_QR;
-  how.max_num_iterations = options.max_iterations;
-  how.function_tolerance = 1e-15;
-  how.gradient_tolerance = 1e-14;
-  how.parameter_tolerance = 1e-12;
-  how.logging_type = ceres::SILENT;
-  how.num_threads = 1;
+  ceres::Solver::Options how = studies::to_last_digits(options.max_iterations);
   how.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(how, &least_squares, &summary);

@@ -4,8 +4,6 @@
 //   3. the best end: terms without a share are dropped, errors, warnings for times that the data do not reach
 #include "studies/fit/prony.h"
 
-#include <ceres/ceres.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -16,6 +14,7 @@
 #include <optional>
 
 #include "engine/base/text.h"
+#include "studies/ceres_words.h"
 #include "studies/table_row.h"
 
 namespace isochor::fit {
@@ -53,14 +52,6 @@ struct Residuals {
   }
 };
 
-struct Stop : ceres::IterationCallback {
-  explicit Stop(const std::function<bool()>& asked) : stop(asked) {}
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary&) override {
-    return stop && stop() ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
-  }
-  const std::function<bool()>& stop;
-};
-
 struct Search {
   std::vector<double> x;
   double cost = std::numeric_limits<double>::infinity();
@@ -84,15 +75,8 @@ Search search(const Relaxation& data, const PronyOptions& options, double scale,
     problem.SetParameterLowerBound(out.x.data(), static_cast<int>(i), time ? log_times.first : 0);
     if (time) problem.SetParameterUpperBound(out.x.data(), static_cast<int>(i), log_times.second);
   }
-  Stop stop(options.stop);
-  ceres::Solver::Options how;
-  how.linear_solver_type = ceres::DENSE_QR;
-  how.max_num_iterations = 500;
-  how.function_tolerance = 1e-15;
-  how.gradient_tolerance = 1e-14;
-  how.parameter_tolerance = 1e-12;
-  how.logging_type = ceres::SILENT;
-  how.num_threads = 1;
+  studies::StopSearch stop(options.stop);
+  ceres::Solver::Options how = studies::to_last_digits(500);
   how.callbacks.push_back(&stop);
   ceres::Solver::Summary summary;
   ceres::Solve(how, &problem, &summary);
@@ -135,17 +119,22 @@ void take(const Search& best, const Relaxation& data, const PronyOptions& option
 }
 
 void judge(const Relaxation& data, const PronyOptions& options, PronyFit& fit) {
+  // Over the largest value: squares of what is given may be no numbers.
+  const double scale = *std::max_element(data.value.begin(), data.value.end());
   double mean = 0, squares = 0, about = 0;
   const auto n = static_cast<double>(data.value.size());
-  for (const double v : data.value) mean += v / n;
+  for (const double v : data.value) mean += v / scale / n;
   for (std::size_t k = 0; k < data.value.size(); ++k) {
-    const double error = relaxed(fit, options.ramp, data.time[k]) - data.value[k];
+    const double value = data.value[k] / scale;
+    const double error = relaxed(fit, options.ramp, data.time[k]) / scale - value;
     squares += error * error;
-    about += (data.value[k] - mean) * (data.value[k] - mean);
-    fit.worst = std::max(fit.worst, std::abs(error));
+    about += (value - mean) * (value - mean);
+    fit.worst = std::max(fit.worst, scale * std::abs(error));
   }
-  fit.rms = std::sqrt(squares / n);
-  fit.r2 = about > 0 ? 1 - squares / about : 1;
+  fit.rms = scale * std::sqrt(squares / n);
+  // Values that are alike but for rounding have no spread to explain.
+  constexpr double rounding = 1e-28;
+  fit.r2 = about > rounding * n ? 1 - squares / about : 1;
 }
 
 std::optional<double> number_in(std::string text, char separator) {

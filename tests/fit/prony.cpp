@@ -118,6 +118,23 @@ TEST_CASE("what the data do not reach is told") {
   CHECK(fit.warnings.front().find("is longer than the data") != std::string::npos);
 }
 
+TEST_CASE("data of any size and without any spread give numbers") {
+  for (const double instant : {1e-300, 1.0, 1e308}) {
+    CAPTURE(instant);
+    for (const std::vector<PronyTerm>& terms : {std::vector<PronyTerm>{}, {{0.3, 2.0}}}) {
+      for (const int most : {1, 2}) {
+        CAPTURE(terms.size(), most);
+        PronyOptions options;
+        options.terms = most;
+        const PronyFit fit = fit_prony(made(terms, instant, 0), options);
+        CHECK(fit.r2 > 1 - 1e-9);
+        CHECK(fit.rms <= 1e-6 * instant);
+        CHECK(std::isfinite(fit.worst));
+      }
+    }
+  }
+}
+
 TEST_CASE("files of relaxations are read, and bad ones told") {
   const auto path = std::filesystem::temp_directory_path() / "isochor_relaxation_good.csv";
   std::ofstream(path) << "sample 3\nTime (s);Force (N)\n0,5;2,0\n1;1,5\n2;1,25\n\n4;1,1\n8;1,05\n";
