@@ -45,7 +45,7 @@ std::vector<Section> present(std::span<const Measured> all) {
   std::vector<Section> out;
   for (const PaperPart& part : paper_parts(false)) {
     Section s{part.title, part.differs};
-    Table t{part.title, {"figure", "case", "element, law", "number", "paper", "here"}, {}};
+    Table t{"Numbers", {"figure", "case", "element, law", "number", "paper", "here"}, {}};
     for (const PaperCase& one : part.cases) {
       if (const Measured* m = find(all, one.cell.id)) add_rows(t, one, *m);
     }

@@ -108,13 +108,15 @@ studies::Page design_page(const Design& design) {
   if (!design.reason.empty()) page.notes.push_back(design.reason);
   if (!design.reached && !design.note.empty()) page.notes.push_back(design.note);
   studies::Section found{"What was found", ""};
-  studies::Table table{"", {"surface", "moves by [mm]", "from", "to", ""}, {}};
+  studies::Table table{"", {"surface", "moves by [mm]", "least [mm]", "most [mm]", ""}, {}};
   for (const DesignedMove& m : design.moves) {
     table.rows.push_back({name_of(m.move), text(1e3 * m.value, 5), text(1e3 * m.move.least, 5),
                           text(1e3 * m.move.most, 5), m.at_bound ? "at a bound" : ""});
   }
   if (!table.rows.empty()) found.tables.push_back(std::move(table));
-  for (const std::string& line : summary_lines(design)) page.run.push_back({"", line});
+  for (const std::string& line : summary_lines(design)) found.text += (found.text.empty() ? "" : ". ") + line;
+  page.run = {{"Scene", design.scene.name},
+              {"Steps", std::to_string(std::max<std::size_t>(design.history.size(), 1) - 1)}};
   studies::Diagram way;
   way.title = "The way";
   way.x = "step";
