@@ -1,6 +1,5 @@
 // Growth: free swelling and constrained stress in closed form for all elements and laws, a bilayer against
 // Timoshenko's curvature, the state, gradients, refusals.
-#include <Eigen/Dense>
 #include <functional>
 
 #include "engine/elements/material_model.h"

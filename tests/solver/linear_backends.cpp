@@ -5,6 +5,7 @@
 
 #include "catch.h"
 #include "solver/linear_support.h"
+#include "support/dense.h"
 
 namespace {
 
@@ -37,8 +38,7 @@ double error_of(const Eigen::VectorXd& exact, const std::vector<double>& x) {
 }
 
 int negative_eigenvalues(const Matrix& m) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(m.dense(), Eigen::EigenvaluesOnly);
-  return static_cast<int>((eigen.eigenvalues().array() < 0).count());
+  return test::negative_eigenvalues(m.dense());
 }
 
 void check_solution(LinearSolver& solver, const Matrix& m) {
@@ -53,7 +53,7 @@ void check_solution(LinearSolver& solver, const Matrix& m) {
   CHECK(s.ok);
   CHECK(s.residual < 1e-13);
   const Eigen::VectorXd exact =
-      m.dense().fullPivLu().solve(Eigen::Map<const Eigen::VectorXd>(b.data(), m.pattern.size));
+      test::solve(m.dense(), Eigen::Map<const Eigen::VectorXd>(b.data(), m.pattern.size));
   CHECK(error_of(exact, x) < 1e-9);
 }
 

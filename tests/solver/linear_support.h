@@ -1,7 +1,7 @@
 // Small saddle-point matrices for the linear solvers: tridiagonal stiffness with constraint rows.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <random>
 #include <vector>
 

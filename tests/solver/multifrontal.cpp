@@ -8,6 +8,7 @@
 #include "engine/solvers/foreign/mumps_solver.h"
 #include "engine/solvers/front/multifrontal_solver.h"
 #include "solver/linear_support.h"
+#include "support/dense.h"
 
 namespace {
 
@@ -21,8 +22,7 @@ std::unique_ptr<LinearSolver> pivoting() {
 }
 
 Index negative_eigenvalues(const Matrix& m) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(m.dense(), Eigen::EigenvaluesOnly);
-  return static_cast<Index>((eigen.eigenvalues().array() < 0).count());
+  return test::negative_eigenvalues(m.dense());
 }
 
 // Entries of L and multiplications, by eliminating a dense pattern.
@@ -61,11 +61,11 @@ Fill dense_fill(const Matrix& m, const Ordering& ordering) {
 
 // The matrix with the eigenvalue that is nearest to zero moved to `value`.
 Matrix with_eigenvalue(const Matrix& m, double value) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(m.dense());
+  const test::Spectrum all = test::spectrum(m.dense());
   Eigen::Index nearest = 0;
-  eigen.eigenvalues().cwiseAbs().minCoeff(&nearest);
-  const Eigen::VectorXd v = eigen.eigenvectors().col(nearest);
-  const Eigen::MatrixXd a = m.dense() + (value - eigen.eigenvalues()[nearest]) * v * v.transpose();
+  all.values.cwiseAbs().minCoeff(&nearest);
+  const Eigen::VectorXd v = all.vectors.col(nearest);
+  const Eigen::MatrixXd a = m.dense() + (value - all.values[nearest]) * v * v.transpose();
   Matrix out = test::sparse(0.5 * (a + a.transpose()));
   out.pattern.multiplier = m.pattern.multiplier;
   return out;
@@ -206,7 +206,7 @@ TEST_CASE("factors take another tree in the memory of the last") {
     REQUIRE(factor.factor(RowLoop(), m.values, 1e-13));
     std::vector<double> x = test::random_vector(m.pattern.size);
     const Eigen::VectorXd exact =
-        m.dense().partialPivLu().solve(Eigen::Map<const Eigen::VectorXd>(x.data(), m.pattern.size));
+        test::solve(m.dense(), Eigen::Map<const Eigen::VectorXd>(x.data(), m.pattern.size));
     factor.solve(x);
     CHECK((Eigen::Map<Eigen::VectorXd>(x.data(), exact.size()) - exact).norm() < 1e-9 * exact.norm());
   }
@@ -218,7 +218,7 @@ TEST_CASE("fronts eliminate and solve in both precisions") {
     const FrontTree tree = front_tree(m.pattern, order_unknowns(m.pattern));
     const std::vector<double> b = test::random_vector(m.pattern.size);
     const Eigen::VectorXd exact =
-        m.dense().partialPivLu().solve(Eigen::Map<const Eigen::VectorXd>(b.data(), m.pattern.size));
+        test::solve(m.dense(), Eigen::Map<const Eigen::VectorXd>(b.data(), m.pattern.size));
     FrontFactor<double> full;
     full.set_tree(tree);
     REQUIRE(full.factor(RowLoop(), m.values, 1e-13));

@@ -1,8 +1,7 @@
 // A system that is shared out over ranks against the engine alone. Here ranks are threads, and a dense solver
 // puts the matrix together from what they hold, so that what the engine has to do with ranks is tested
 // without MPI.
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <barrier>
 #include <thread>
 
@@ -10,6 +9,7 @@
 #include "engine/solvers/linear_solver.h"
 #include "engine/system/assembly.h"
 #include "support/compiled.h"
+#include "support/dense.h"
 #include "support/worlds.h"
 
 using namespace test;
@@ -76,14 +76,13 @@ class DenseSolver final : public isochor::LinearSolver {
     }
     ranks_.sum({matrix_.data(), at(n) * at(n)});
     isochor::FactorReport report;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix_, Eigen::EigenvaluesOnly);
-    report.negative_pivots = static_cast<Index>((eigen.eigenvalues().array() < 0).count());
-    lu_.compute(matrix_);
+    report.negative_pivots = test::negative_eigenvalues(matrix_);
+    inverse_ = test::inverse(matrix_);
     return report;
   }
   isochor::SolveReport solve(std::span<const double> b, std::span<double> x) override {
     const auto n = static_cast<Eigen::Index>(b.size());
-    Eigen::Map<Eigen::VectorXd>(x.data(), n) = lu_.solve(Eigen::Map<const Eigen::VectorXd>(b.data(), n));
+    Eigen::Map<Eigen::VectorXd>(x.data(), n) = inverse_ * Eigen::Map<const Eigen::VectorXd>(b.data(), n);
     return {true, 1e-15, 0};
   }
   bool precondition(std::span<double> x) override {
@@ -94,8 +93,7 @@ class DenseSolver final : public isochor::LinearSolver {
  private:
   const isochor::Ranks& ranks_;
   const isochor::SymmetricPattern* pattern_ = nullptr;
-  Eigen::MatrixXd matrix_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  Eigen::MatrixXd matrix_, inverse_;
 };
 
 std::unique_ptr<isochor::LinearSolver> ThreadRanks::linear_solver(isochor::Solver, bool) const {

@@ -3,6 +3,7 @@
 
 #include "engine/solve/kkt/kkt.h"
 #include "engine/solvers/front/multifrontal_solver.h"
+#include "support/dense.h"
 #include "support/random_saddle.h"
 #include "support/worlds.h"
 
@@ -66,8 +67,7 @@ struct Solved {
       }
     }
     const Eigen::Map<const Eigen::VectorXd> g(row_rhs.data(), m);
-    const Eigen::VectorXd lambda =
-        a.bottomRightCorner(m, m).partialPivLu().solve(g - a.bottomLeftCorner(m, n) * u);
+    const Eigen::VectorXd lambda = test::solve(a.bottomRightCorner(m, m), g - a.bottomLeftCorner(m, n) * u);
     const Eigen::VectorXd left = f - a.topLeftCorner(n, n) * u - a.topRightCorner(n, m) * lambda;
     return left.cwiseAbs().maxCoeff() / f.cwiseAbs().maxCoeff();
   }
@@ -83,7 +83,7 @@ struct Solved {
       for (Index c = 0; c < s.unknowns().of(i); ++c) b(s.unknowns().begin(i) + c) = q[c];
     }
     for (Index r = 0; r < s.rows(); ++r) b(n + r) = row_rhs[at(r)];
-    const Eigen::VectorXd u = a.partialPivLu().solve(b);
+    const Eigen::VectorXd u = test::solve(a, b);
     double worst = 0;
     for (Index i = 0; i < s.nodes(); ++i) {
       const Vec3 q = s.unknowns().to_free(i, dx[at(i)]);
@@ -96,9 +96,7 @@ struct Solved {
     return worst / u.cwiseAbs().maxCoeff();
   }
   Index negative_eigenvalues(std::span<const std::uint8_t> held) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(test::dense_saddle(assembly, kMassScale, held),
-                                                               Eigen::EigenvaluesOnly);
-    return static_cast<Index>((eigen.eigenvalues().array() < 0).count());
+    return test::negative_eigenvalues(test::dense_saddle(assembly, kMassScale, held));
   }
   // Every third row of a treatment that can be held, from `first` on.
   std::vector<std::uint8_t> some_held(std::size_t first) const {
@@ -214,9 +212,10 @@ TEST_CASE("the operator on dual multipliers is the Schur complement, weighed") {
   const Eigen::MatrixXd g = a.bottomLeftCorner(m, n), c = -a.bottomRightCorner(m, m);
   const Eigen::VectorXd weight = Eigen::Map<const Eigen::VectorXd>(w.data(), m);
   CHECK(weight.minCoeff() > 0);
-  const Eigen::MatrixXd k = a.topLeftCorner(n, n) + g.transpose() * weight.asDiagonal() * g;
+  const Eigen::MatrixXd k = a.topLeftCorner(n, n) + test::product(g.transpose() * weight.asDiagonal(), g);
   const Eigen::MatrixXd t = Eigen::MatrixXd::Identity(m, m) - weight.asDiagonal() * c;
-  const Eigen::MatrixXd schur = t.transpose() * (c + g * k.llt().solve(g.transpose() * t));
+  const Eigen::MatrixXd schur =
+      test::product(t.transpose(), c + test::product(g, test::solve(k, test::product(g.transpose(), t))));
   const Eigen::VectorXd p = Eigen::Map<const Eigen::VectorXd>(s.row_rhs.data(), m);
   std::vector<double> q(s.row_rhs.size());
   REQUIRE(s.kkt.apply_dual(s.row_rhs, q, s.seconds));

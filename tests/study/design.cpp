@@ -14,6 +14,7 @@
 #include "studies/design/smooth_field.h"
 #include "studies/design/write_gmsh.h"
 #include "studies/inverse/data_report.h"
+#include "support/dense.h"
 #include "support/worlds.h"
 
 using namespace isochor;
@@ -208,9 +209,11 @@ TEST_CASE("what is taken for granted of a field is one operator in all its uses"
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   const Eigen::MatrixXd J = Eigen::MatrixXd::NullaryExpr(7, n, [&] { return 3 * normal(random); });
-  CHECK((field.times(J) - J * B).norm() < 1e-12 * (J * B).norm());
-  const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(n, n) + B.transpose() * J.transpose() * J * B;
-  const Eigen::VectorXd direct = (B * inner.inverse() * B.transpose()).diagonal().cwiseSqrt();
+  const Eigen::MatrixXd JB = test::product(J, B);
+  CHECK((field.times(J) - JB).norm() < 1e-12 * JB.norm());
+  const Eigen::MatrixXd inner = Eigen::MatrixXd::Identity(n, n) + test::product(JB.transpose(), JB);
+  const Eigen::MatrixXd covariance = test::product(B, test::solve(inner, B.transpose()));
+  const Eigen::VectorXd direct = covariance.diagonal().cwiseSqrt();
   CHECK((field.deviations(J) - direct).norm() < 1e-9 * direct.norm());
   // Far from its ends a long bar shows the spread that was asked for, within what a graph of tets makes of
   // it.

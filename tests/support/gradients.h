@@ -1,7 +1,7 @@
 // Deformation gradients of every kind: random, nearly degenerate, crushed, inverted.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <random>
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 // energies and linear functions, nodes that are given in some directions, and rows of every treatment.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <random>
 
 #include "engine/system/assembly.h"
