@@ -148,6 +148,52 @@ TEST_CASE("least squares without limits are those of a factorization", "[drive]"
   CHECK((found.u - A.colPivHouseholderQr().solve(b)).norm() < 1e-11 * found.u.norm());
 }
 
+namespace {
+
+// The problem as the declaration of drive_over_horizon() says it, in amounts over their sizes, those of two
+// actuators at a point beside each other.
+struct Quadratic {
+  Matrix A;
+  Vector b;
+  Matrix C;
+  Vector lower, upper;
+};
+Quadratic quadratic(const Matrix& response, const Vector& off, const Drive& d, const Vector& size,
+                    const Vector& start, double smooth) {
+  const Eigen::Index n = response.cols(), rows = off.size();
+  double weight = 0;
+  for (Eigen::Index k = 0; k < 2; ++k) {
+    Vector sum = Vector::Zero(rows);
+    for (Eigen::Index i = k; i < n; i += 2) sum += response.col(i);
+    weight = std::max(weight, sum.cwiseAbs().maxCoeff());
+  }
+  Quadratic q{Matrix::Zero(rows + n, n), Vector::Zero(rows + n), Matrix::Zero(2 * n, n), Vector(2 * n),
+              Vector(2 * n)};
+  q.A.topRows(rows) = response;
+  q.b.head(rows) = -off;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Index p = i / 2, k = i % 2;
+    const auto& curve = d.curves[static_cast<std::size_t>(k)].points;
+    const double h = curve[static_cast<std::size_t>(p + 1)][0] - curve[static_cast<std::size_t>(p)][0];
+    const double slow = smooth * weight * std::sqrt(curve.back()[0] / h);
+    const Actuator& a = d.actuators[static_cast<std::size_t>(k)];
+    q.A(rows + i, i) = slow;
+    q.C(i, i) = q.C(n + i, i) = 1;
+    if (p > 0)
+      q.A(rows + i, i - 2) = -slow, q.C(n + i, i - 2) = -1;
+    else
+      q.b[rows + i] = slow * start[k];
+    q.lower[i] = a.least / size[k];
+    q.upper[i] = a.most / size[k];
+    const double from = p > 0 ? 0 : start[k];
+    q.lower[n + i] = from - a.rate * h / size[k];
+    q.upper[n + i] = from + a.rate * h / size[k];
+  }
+  return q;
+}
+
+}  // namespace
+
 // Responses are superposed here from runs of the scene, a point of a curve at a time: the gradients have no
 // part in them.
 TEST_CASE("of a scene that is linear the horizon finds the minimum of the quadratic problem", "[drive]") {
@@ -178,7 +224,6 @@ TEST_CASE("of a scene that is linear the horizon finds the minimum of the quadra
     CHECK(d.reason.empty());
     REQUIRE(d.curves.size() == 2);
 
-    // The problem as its declaration says it, in amounts over their sizes.
     const auto points = static_cast<Eigen::Index>(d.curves[0].points.size()) - 1;
     REQUIRE(points == (steps + every - 1) / every);
     const Eigen::Index n = 2 * points;
@@ -205,36 +250,7 @@ TEST_CASE("of a scene that is linear the horizon finds the minimum of the quadra
     const Vector off = with(Vector::Zero(n));
     Matrix response(off.size(), n);
     for (Eigen::Index i = 0; i < n; ++i) response.col(i) = (with(0.01 * Vector::Unit(n, i)) - off) / 0.01;
-    double weight = 0;
-    for (Eigen::Index k = 0; k < 2; ++k) {
-      Vector sum = Vector::Zero(off.size());
-      for (Eigen::Index p = 0; p < points; ++p) sum += response.col(2 * p + k);
-      weight = std::max(weight, sum.cwiseAbs().maxCoeff());
-    }
-    Matrix A(off.size() + n, n), C = Matrix::Zero(2 * n, n);
-    Vector b(off.size() + n), lower(2 * n), upper(2 * n);
-    A.setZero();
-    A.topRows(off.size()) = response;
-    b.setZero();
-    b.head(off.size()) = -off;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const Eigen::Index p = i / 2, k = i % 2;
-      const auto& curve = d.curves[static_cast<std::size_t>(k)].points;
-      const double h = curve[static_cast<std::size_t>(p + 1)][0] - curve[static_cast<std::size_t>(p)][0];
-      const double slow = options.smooth.value() * weight * std::sqrt(0.01 * steps / h);
-      const Actuator& a = actuators[static_cast<std::size_t>(k)];
-      A(off.size() + i, i) = slow;
-      C(i, i) = C(n + i, i) = 1;
-      if (p > 0)
-        A(off.size() + i, i - 2) = -slow, C(n + i, i - 2) = -1;
-      else
-        b[off.size() + i] = slow * start[k];
-      lower[i] = a.least / size[k];
-      upper[i] = a.most / size[k];
-      const double from = p > 0 ? 0 : start[k];
-      lower[n + i] = from - a.rate * h / size[k];
-      upper[n + i] = from + a.rate * h / size[k];
-    }
+    const auto [A, b, C, lower, upper] = quadratic(response, off, d, size, start, options.smooth.value());
     Vector found(n);
     for (Eigen::Index i = 0; i < n; ++i)
       found[i] = d.curves[static_cast<std::size_t>(i % 2)].points[static_cast<std::size_t>(i / 2 + 1)][1] /
