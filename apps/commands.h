@@ -136,6 +136,9 @@ struct DriveArguments {
   std::string scene, targets, folder;           // folder empty: out/drive/NAME
   std::vector<std::string> amounts, overrides;  // amounts: NAME=LEAST:MOST:RATE
   double tolerance = 1e-6;                      // [m]
+  bool horizon = false;                         // all amounts at once
+  int every = 1;
+  std::optional<double> smooth;
   int threads = 0;
   bool json = false, quiet = false;
 };

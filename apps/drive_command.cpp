@@ -8,6 +8,7 @@
 #include "apps/table.h"
 #include "scenes/run/outputs.h"
 #include "scenes/run/run.h"
+#include "studies/drive/horizon.h"
 #include "studies/drive/report.h"
 
 namespace isochor::app {
@@ -31,6 +32,9 @@ Result<void> write(const DriveArguments& a, const std::string& folder, const Sce
       std::fprintf(stderr, "isochor: the run with the amounts found: %s\n", run.reason.c_str());
   }
   if (auto r = write_text(folder + "/drive.csv", drive::drive_csv(found)); !r) return r;
+  if (!found.curves.empty()) {
+    if (auto r = write_text(folder + "/amounts.csv", drive::amounts_csv(found)); !r) return r;
+  }
   return write_text(folder + "/drive.json", drive::drive_json(found));
 }
 
@@ -43,6 +47,23 @@ void print(const drive::Drive& found, const std::string& folder) {
                                      [](const drive::Reached& r) { return r.reached; });
   std::printf("%td of %zu targets reached\n%s/drive.csv\n", reached, found.targets.time.size(),
               folder.c_str());
+}
+
+Result<drive::Drive> search(const DriveArguments& a, const SceneDef& scene,
+                            std::vector<drive::Actuator> actuators, drive::Targets targets) {
+  drive::HorizonOptions options;
+  options.tolerance = a.tolerance;
+  options.threads = a.threads;
+  options.stop = stop_wanted;
+  options.every = a.every;
+  options.smooth = a.smooth;
+  if (!a.horizon) return drive::drive(scene, std::move(actuators), std::move(targets), options);
+  if (!a.quiet && !a.json) {
+    options.on_iteration = [](int gradients, double distance) {
+      std::fprintf(stderr, "gradient %d: off by %.4g\n", gradients, distance);
+    };
+  }
+  return drive::drive_over_horizon(scene, std::move(actuators), std::move(targets), options);
 }
 
 }  // namespace
@@ -59,11 +80,7 @@ int drive_scene(const DriveArguments& a) {
     actuators.push_back(std::move(actuator).value());
   }
   stop_on_signals();
-  drive::DriveOptions options;
-  options.tolerance = a.tolerance;
-  options.threads = a.threads;
-  options.stop = stop_wanted;
-  const auto found = drive::drive(scene.value(), std::move(actuators), std::move(targets).value(), options);
+  const auto found = search(a, scene.value(), std::move(actuators), std::move(targets).value());
   if (!found) return refuse(found.error());
   const std::string folder = a.folder.empty() ? "out/drive/" + scene.value().name : a.folder;
   if (auto r = write(a, folder, scene.value(), found.value()); !r) {

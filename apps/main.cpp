@@ -178,6 +178,15 @@ void add_drive(CLI::App& top, app::DriveArguments& a) {
   c->add_option("--tolerance", a.tolerance, "Distance within which a target is reached; default 1e-6")
       ->type_name("METERS")
       ->check(positive());
+  auto* horizon =
+      c->add_flag("--horizon", a.horizon, "Choose the amounts of all times together; dynamics too");
+  c->add_option("--every", a.every, "Increments between two points of an amount's curve; default 1")
+      ->needs(horizon)
+      ->check(CLI::Range(1, 1000000));
+  c->add_option("--smooth", a.smooth,
+                "How much changes of amounts count; default 1e-4, and less where that keeps from targets")
+      ->needs(horizon)
+      ->check(positive());
   c->add_option("--out", a.folder, "Folder of the outputs; default out/drive/NAME")->type_name("DIR");
   c->add_option("--threads", a.threads, "Threads; 0: all the machine has")->check(CLI::Range(0, 1024));
   c->add_flag("--json", a.json, "Print drive.json");

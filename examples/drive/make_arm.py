@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Makes arm.msh and circle.csv: a square arm of hexahedra with three chambers along it, and a circle for its tip.
+"""Makes arm.msh, circle.csv and still.csv: a square arm of hexahedra with three chambers along it, a circle for its tip,
+and a place where it is to be at rest.
 
     python3 examples/drive/make_arm.py [FOLDER]
 """
@@ -66,7 +67,15 @@ def circle(radius=0.005, steps=24):
         yield f"{n + 2},{radius * math.cos(angle):.9g},{radius * math.sin(angle):.9g}"
 
 
+def still(aside=0.010, arrives=0.5, leaves=0.7, step=0.02):
+    """At one place at each of several increments: there and not moving."""
+    yield "time,tip.x,tip.y"
+    for n in range(round((leaves - arrives) / step) + 1):
+        yield f"{arrives + n * step:.9g},{aside:.9g},0"
+
+
 if __name__ == "__main__":
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).parent
     (folder / "arm.msh").write_text("\n".join(arm()) + "\n")
     (folder / "circle.csv").write_text("\n".join(circle()) + "\n")
+    (folder / "still.csv").write_text("\n".join(still()) + "\n")

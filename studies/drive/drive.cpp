@@ -15,43 +15,14 @@
 
 #include "engine/base/text.h"
 #include "isochor/gradients.h"
-#include "scenes/effects/kind.h"
 #include "scenes/schedule.h"
+#include "studies/drive/amounts.h"
 #include "studies/drive/bounded.h"
 #include "studies/inverse/answer.h"
 
 namespace isochor::drive {
 
 namespace {
-
-// The amount of the first effect of a name that has one, and which effect that is.
-template <class Scene, class Found>
-bool find_amount(Scene& scene, const std::string& name, Found&& found) {
-  const auto look = [&](auto& list, const EffectKind& kind) {
-    for (std::size_t k = 0; k < list.size(); ++k) {
-      if (list[k].name != name) continue;
-      found(list[k].amount, kind, k);
-      return true;
-    }
-    return false;
-  };
-  return look(scene.cavities, cavities_kind) || look(scene.cables, cables_kind) ||
-         look(scene.pressures, pressures_kind) || look(scene.tractions, tractions_kind) ||
-         look(scene.forces, forces_kind) || look(scene.dirichlet, dirichlet_kind) ||
-         look(scene.valves, valves_kind);
-}
-
-std::string names_with_amounts(const SceneDef& scene) {
-  std::string names;
-  for (const EffectKind* kind : effect_kinds) {
-    for (std::size_t k = 0; k < kind->size(scene); ++k) {
-      const std::string& name = kind->name(scene, k);
-      if (find_amount(scene, name, [](const Curve&, const EffectKind&, std::size_t) {}))
-        names += (names.empty() ? "\"" : ", \"") + name + "\"";
-    }
-  }
-  return names.empty() ? "none" : names;
-}
 
 // Redundant amounts are told apart by how much they change, weighed with this of what they do.
 constexpr double kLeastChange = 1e-6;
@@ -67,13 +38,16 @@ constexpr int kMostPolishing = 6;
 class Search {
  public:
   Search(Drive& drive, const SceneDef& scene, BuiltScene& built, const DriveOptions& options)
-      : drive_(drive), options_(options), world_(built.world), watched_(scene, built, drive.targets.goals) {
-    find_units();
-  }
+      : drive_(drive),
+        options_(options),
+        world_(built.world),
+        watched_(scene, built, drive.targets.goals),
+        units_(units_of(drive.targets)) {}
 
-  Result<void> find_effects(const SceneDef& scene, const BuiltScene& built);
-  // Millimeters for meters, say: no amount brings a probe that far.
-  Result<void> check_distances() const;
+  void find_effects(SceneDef& scene, const BuiltScene& built);
+  Result<void> check() const {
+    return check_distances(world_, drive_.targets, positions().cwiseProduct(units_));
+  }
   void run();
 
  private:
@@ -81,8 +55,6 @@ class Search {
   std::size_t goals() const { return drive_.targets.goals.size(); }
   Eigen::Index amounts() const { return static_cast<Eigen::Index>(effects_.size()); }
 
-  // Of each goal what counts as 1: a meter, or the largest target of its kind.
-  void find_units();
   // Over these units.
   Vector positions() const {
     Vector out(static_cast<Eigen::Index>(goals()));
@@ -125,76 +97,17 @@ class Search {
   double weight_ = 0;  // its largest entry, by amounts over their sizes [m]
 };
 
-void Search::find_units() {
-  units_.setOnes(static_cast<Eigen::Index>(goals()));
-  for (std::size_t g = 0; g < goals(); ++g) {
-    const auto kind = drive_.targets.goals[g].kind;
-    if (kind == inverse::Quantity::Kind::position) continue;
-    double most = 0;
-    for (const std::vector<double>& values : drive_.targets.value) {
-      for (std::size_t k = 0; k < goals(); ++k) {
-        if (drive_.targets.goals[k].kind == kind) most = std::max(most, std::abs(values[k]));
-      }
-    }
-    if (most > 0) units_[static_cast<Eigen::Index>(g)] = most;
-  }
-}
-
-Result<void> Search::check_distances() const {
-  constexpr double farthest = 100;  // over the size of the bodies
-  Vec3 lower{HUGE_VAL, HUGE_VAL, HUGE_VAL}, upper = -1.0 * lower;
-  for (const BodyId body : world_.bodies()) {
-    for (const Vec3& X : world_.rest_positions(body)) {
-      for (int k = 0; k < 3; ++k) {
-        lower[k] = std::min(lower[k], X[k]);
-        upper[k] = std::max(upper[k], X[k]);
-      }
-    }
-  }
-  const Vec3 size = upper - lower;
-  const double length = std::sqrt(dot(size, size));
-  const Vector now = positions();
-  for (std::size_t step = 0; step < drive_.targets.time.size(); ++step) {
-    for (std::size_t g = 0; g < goals(); ++g) {
-      if (drive_.targets.goals[g].kind != inverse::Quantity::Kind::position) continue;
-      const double target = drive_.targets.value[step][g],
-                   away = std::abs(target - now[static_cast<Eigen::Index>(g)]);
-      if (away <= farthest * length) continue;
-      return Error{"drive: target " + drive_.targets.goals[g].name + " = " + number(target) +
-                   " at t = " + number(drive_.targets.time[step]) + " is " + number(away) +
-                   " m from where the probe begins, and the scene is " + number(length) +
-                   " m across; targets are positions in meters"};
-    }
-  }
-  return {};
-}
-
-Result<void> Search::find_effects(const SceneDef& scene, const BuiltScene& built) {
+void Search::find_effects(SceneDef& scene, const BuiltScene& built) {
   const auto n = static_cast<Eigen::Index>(drive_.actuators.size());
   before_.resize(n);
   scale_.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Actuator& a = drive_.actuators[static_cast<std::size_t>(i)];
-    const bool found =
-        find_amount(scene, a.effect, [&](const Curve& amount, const EffectKind& kind, std::size_t k) {
-          effects_.push_back(built.ids(kind)[k]);
-          before_[i] = evaluate(amount, 0);
-        });
-    if (!found) {
-      return Error{"drive: the scene has no effect \"" + a.effect + "\" with an amount; it has " +
-                   names_with_amounts(scene)};
-    }
-    if (before_[i] < a.least || before_[i] > a.most) {
-      return Error{"drive: the amount of \"" + a.effect + "\" begins at " + number(before_[i]) +
-                   ", outside of its bounds " + number(a.least) + " to " + number(a.most) +
-                   "; widen them, or begin elsewhere with --set"};
-    }
-    const double range = a.most - a.least;
-    scale_[i] = std::isfinite(range) ? range : std::max(1.0, std::abs(before_[i]));
-    if (!(scale_[i] > 0))
-      return Error{"drive: the bounds of \"" + a.effect + "\" leave it no choice; widen them"};
+    const FoundAmount found = find_amount(scene, a.effect);
+    effects_.push_back(built.ids(*found.kind)[found.number]);
+    before_[i] = evaluate(*found.amount, 0);
+    scale_[i] = size_of(a, before_[i]);
   }
-  return {};
 }
 
 bool Search::attempt(const Vector& a, double h) {
@@ -404,17 +317,13 @@ Result<Actuator> parse_actuator(const std::string& text) {
 
 Result<Drive> drive(const SceneDef& scene, std::vector<Actuator> actuators, Targets targets,
                     const DriveOptions& options) {
-  if (actuators.empty()) return Error{"drive: no amount may be chosen; name at least one with --amount"};
-  for (std::size_t i = 0; i < actuators.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      if (actuators[k].effect == actuators[i].effect)
-        return Error{"drive: --amount \"" + actuators[i].effect + "\" is there twice; keep one"};
-    }
-  }
+  SceneDef said = scene;
+  if (auto r = check_actuators(said, actuators); !r) return r.failure();
   if (scene.analysis.type != AnalysisType::statics || scene.analysis.path_step) {
     return Error{
         "drive: the analysis of scene \"" + scene.name +
-        "\" is not statics with fixed loads; set analysis.type to \"static\" and leave path_step out"};
+        "\" is not statics with fixed loads; set analysis.type to \"static\" and leave path_step out, or "
+        "choose all amounts at once with --horizon"};
   }
   if (auto r = no_schedule(scene, "drive"); !r) return r.failure();
   auto built = build(scene, {.threads = options.threads});
@@ -423,8 +332,8 @@ Result<Drive> drive(const SceneDef& scene, std::vector<Actuator> actuators, Targ
   out.actuators = std::move(actuators);
   out.targets = std::move(targets);
   Search search(out, scene, built.value(), options);
-  if (auto r = search.find_effects(scene, built.value()); !r) return r.failure();
-  if (auto r = search.check_distances(); !r) return r.failure();
+  search.find_effects(said, built.value());
+  if (auto r = search.check(); !r) return r.failure();
   search.run();
   return out;
 }
@@ -433,15 +342,18 @@ Result<SceneDef> driven_scene(const SceneDef& scene, const Drive& drive) {
   if (drive.steps.empty()) return Error{"drive: no target was come to"};
   SceneDef out = scene;
   for (std::size_t i = 0; i < drive.actuators.size(); ++i) {
-    find_amount(out, drive.actuators[i].effect, [&](Curve& amount, const EffectKind&, std::size_t) {
-      amount.points = {{0, evaluate(amount, 0)}};
-      for (const Reached& r : drive.steps) amount.points.push_back({r.time, r.amount[i]});
-    });
+    Curve& amount = *find_amount(out, drive.actuators[i].effect).amount;
+    if (!drive.curves.empty()) {
+      amount = drive.curves[i];
+      continue;
+    }
+    amount.points = {{0, evaluate(amount, 0)}};
+    for (const Reached& r : drive.steps) amount.points.push_back({r.time, r.amount[i]});
   }
   // Steps of one length that meet all targets, where there is such a length.
   out.analysis.duration = drive.steps.back().time;
   out.analysis.step.reset();
-  out.analysis.steps = static_cast<int>(drive.steps.size());
+  out.analysis.steps = drive.curves.empty() ? static_cast<int>(drive.steps.size()) : drive.increments;
   return out;
 }
 

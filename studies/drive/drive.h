@@ -1,5 +1,5 @@
 // Amounts of effects that bring probes, forces of supports and chambers to targets, one target after the
-// other.
+// other; horizon.h chooses all at once.
 #pragma once
 
 #include <functional>
@@ -47,6 +47,10 @@ struct Drive {
   std::vector<Reached> steps;  // as far as it got
   std::string reason;          // why it ended before the last target; empty: it did not
   bool interrupted = false;
+  // Over a whole horizon: the amounts of each actuator, from where the scene begins to the last target, and
+  // how many increments that are; of step by step none.
+  std::vector<Curve> curves;
+  int increments = 0;
   bool all_reached() const;
 };
 

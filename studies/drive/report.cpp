@@ -75,7 +75,25 @@ std::string drive_json(const Drive& drive) {
                                 {"at_bound", r.at_bound},
                                 {"gradients", r.iterations}});
   }
+  if (!drive.curves.empty()) {
+    out["increments"] = drive.increments;
+    out["curves"] = Json::array();
+    for (const Curve& curve : drive.curves) out["curves"].push_back(curve.points);
+  }
   return out.dump(2) + "\n";
+}
+
+std::string amounts_csv(const Drive& drive) {
+  if (drive.curves.empty()) return "";
+  std::string out = "time";
+  for (const Actuator& a : drive.actuators) out += "," + quoted(a.effect);
+  out += "\n";
+  for (std::size_t p = 0; p < drive.curves.front().points.size(); ++p) {
+    out += full(drive.curves.front().points[p][0]);
+    for (const Curve& curve : drive.curves) out += "," + full(curve.points[p][1]);
+    out += "\n";
+  }
+  return out;
 }
 
 std::vector<std::string> table_head(const Drive& drive) {

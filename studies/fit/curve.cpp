@@ -125,15 +125,10 @@ void select(const CurveOptions& options, Curve& curve) {
 Result<Mode> split_mode(std::string& path) {
   const auto colon = path.rfind(':');
   if (colon == std::string::npos || std::filesystem::exists(path)) return Mode::uniaxial;
-  const std::string said = path.substr(colon + 1);
-  for (const Mode mode : {Mode::uniaxial, Mode::equibiaxial, Mode::pure_shear}) {
-    if (said == word(mode)) {
-      path.resize(colon);
-      return mode;
-    }
-  }
-  return Error{path + ": \"" + said +
-               "\" is no mode; write uniaxial, equibiaxial or pure_shear after the colon"};
+  auto mode = mode_of(path.substr(colon + 1));
+  if (!mode) return Error{path + ": after the colon: " + mode.error()};
+  path.resize(colon);
+  return mode;
 }
 
 // The points below the header.
@@ -173,12 +168,23 @@ Range range_of(const std::vector<Curve>& curves) {
   return range;
 }
 
+Result<Mode> mode_of(const std::string& said) {
+  for (const Mode mode : {Mode::uniaxial, Mode::equibiaxial, Mode::pure_shear}) {
+    if (said == word(mode)) return mode;
+  }
+  return Error{"\"" + said + "\" is no mode; write uniaxial, equibiaxial or pure_shear"};
+}
+
 Result<Curve> read_curve(const std::string& given, const CurveOptions& options) {
   std::string path = given;
   auto mode = split_mode(path);
   if (!mode) return mode.failure();
   std::ifstream in(path);
   if (!in) return Error{path + ": cannot be read; give a CSV file with columns of strain and stress"};
+  return read_curve(in, path, mode.value(), options);
+}
+
+Result<Curve> read_curve(std::istream& in, const std::string& path, Mode mode, const CurveOptions& options) {
   std::optional<Columns> columns;
   std::size_t line_number = 0;
   for (std::string line; !columns && std::getline(in, line);) {
@@ -198,7 +204,7 @@ Result<Curve> read_curve(const std::string& given, const CurveOptions& options) 
   }
   Curve curve;
   curve.name = std::filesystem::path(path).stem().string();
-  curve.mode = mode.value();
+  curve.mode = mode;
   if (auto r = read_points(in, path, *columns, line_number, curve); !r) return r.failure();
   if (curve.stress.empty()) return Error{path + ": the header has no points below it"};
   const double largest = std::max(std::abs(*std::max_element(curve.stress.begin(), curve.stress.end())),

@@ -1,6 +1,7 @@
 // Measured curves of homogeneous tests: stretch against nominal stress.
 #pragma once
 
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@ namespace isochor::fit {
 // How the block is loaded; the third direction is free of stress.
 enum class Mode { uniaxial, equibiaxial, pure_shear };
 const char* word(Mode mode);
+Result<Mode> mode_of(const std::string& word);
 
 struct Curve {
   std::string name;  // of the file, without folder and ending
@@ -39,5 +41,7 @@ struct CurveOptions {
 // incompressible block. `path` may end in ":uniaxial", ":equibiaxial" or ":pure_shear". Errors name file,
 // line and remedy.
 Result<Curve> read_curve(const std::string& path, const CurveOptions& options);
+// The same of a text; `source` is for messages and the name.
+Result<Curve> read_curve(std::istream& in, const std::string& source, Mode mode, const CurveOptions& options);
 
 }  // namespace isochor::fit

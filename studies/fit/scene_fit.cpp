@@ -4,7 +4,7 @@
 //   2. at the start: units, constants that nothing depends on
 //   3. search: scenes are built with the constants of a trial and go through the times of their data;
 //   Jacobians
-//      from World::gradients at each time
+//      from World::gradients at each time, or from ways beside it where scenes remember theirs
 //   4. at the end: intervals, what cannot be told apart, bounds
 #include "studies/fit/scene_fit.h"
 
@@ -15,6 +15,7 @@
 
 #include "engine/base/text.h"
 #include "scenes/body_parts.h"
+#include "scenes/effects/kind.h"
 #include "scenes/parameters_by_keys.h"
 #include "scenes/scene_file.h"
 #include "studies/inverse/intervals.h"
@@ -33,32 +34,77 @@ std::string override_text(const std::string& path, double value) {
   return path + "=" + text;
 }
 
-// "bodies[0].materials[1].young" in its parts.
+// "bodies[0].materials[1].young" or "springs[0].stiffness" in its parts.
 struct Place {
+  const EffectKind* kind = nullptr;  // of an effect, which is the one of its number
+  std::size_t effect = 0;
   std::size_t body = 0, material = 0;
   std::string key;
+  bool in(const SceneDef& scene) const {
+    if (kind) return effect < kind->size(scene);
+    return body < scene.bodies.size() && material < scene.bodies[body].materials.size();
+  }
 };
 
 Result<Place> place_of(const std::string& path) {
   Place out;
   unsigned body = 0, material = 0;
   int length = 0;
-  if (std::sscanf(path.c_str(), "bodies[%u].materials[%u].%n", &body, &material, &length) != 2 ||
-      length == 0 || path.size() == static_cast<std::size_t>(length)) {
-    return Error{"fit: --constant " + path +
-                 " is no number of a material; give a path such as bodies[0].materials[0].young"};
+  const auto rest = [&] { return path.size() > static_cast<std::size_t>(length) && length > 0; };
+  if (std::sscanf(path.c_str(), "bodies[%u].materials[%u].%n", &body, &material, &length) == 2 && rest()) {
+    out.body = body;
+    out.material = material;
+    out.key = path.substr(static_cast<std::size_t>(length));
+    return out;
   }
-  out.body = body;
-  out.material = material;
-  out.key = path.substr(static_cast<std::size_t>(length));
-  return out;
+  for (const EffectKind* kind : effect_kinds) {
+    length = 0;
+    if (std::sscanf(path.c_str(), (kind->key + std::string("[%u].%n")).c_str(), &body, &length) != 1 ||
+        !rest())
+      continue;
+    out.kind = kind;
+    out.effect = body;
+    out.key = path.substr(static_cast<std::size_t>(length));
+    return out;
+  }
+  return Error{"fit: --constant " + path +
+               " is no number of a material or an effect; give a path such as bodies[0].materials[0].young "
+               "or springs[0].stiffness"};
+}
+
+// An effect of a scene as its keys make it.
+Result<EffectPtr> effect_of(const SceneDef& scene, const Place& place) {
+  std::vector<EffectPtr> made;
+  EffectAdder adder(scene, [&](const EffectKind&, EffectPtr effect) -> Result<void> {
+    made.push_back(std::move(effect));
+    return {};
+  });
+  if (auto r = place.kind->add(*place.kind, adder); !r) return r.failure();
+  if (place.effect < made.size()) return made[place.effect];
+  return Error{place.kind->key + std::string(" has no entry ") + std::to_string(place.effect)};
+}
+
+// What is on the way has a say in what comes later: then gradients at the equilibria are not those of the
+// way.
+bool remembers(const SceneDef& scene) {
+  const auto rubs = [](const auto& contact) { return contact.friction > 0; };
+  const auto filled = [](const CavityDef& c) {
+    return c.control == CavityControl::gas || c.control == CavityControl::liquid;
+  };
+  for (const SceneBody& body : scene.bodies) {
+    for (const MaterialDef& m : body.materials) {
+      if (!m.prony.empty() || m.mullins) return true;
+    }
+  }
+  return std::any_of(scene.contacts.begin(), scene.contacts.end(), rubs) ||
+         std::any_of(scene.surface_contacts.begin(), scene.surface_contacts.end(), rubs) ||
+         std::any_of(scene.cavities.begin(), scene.cavities.end(), filled);
 }
 
 Result<double> value_now(const SceneDef& scene, const std::string& path, const Place& place) {
   // Scenes leave a density out that is the usual one.
-  const bool there =
-      place.body < scene.bodies.size() && place.material < scene.bodies[place.body].materials.size();
-  if (place.key == "density" && there) return scene.bodies[place.body].materials[place.material].density;
+  if (!place.kind && place.key == "density" && place.in(scene))
+    return scene.bodies[place.body].materials[place.material].density;
   const auto number = number_in_keys(to_json(scene), path);
   if (!number) return number.failure();
   return number.value().value;
@@ -124,12 +170,12 @@ class SceneSearch {
 
  private:
   Eigen::Index count() const { return static_cast<Eigen::Index>(unknowns_.size()); }
-  bool has(const Experiment& e, const Unknown& u) const {
-    return u.place.body < e.scene.bodies.size() &&
-           u.place.material < e.scene.bodies[u.place.body].materials.size();
-  }
   Result<SceneDef> scene_at(const Experiment& e, const Vector& x) const;
   inverse::ParametersOf parameters_of(const Experiment& e, const SceneDef& scene, const Vector& x) const;
+  // How what is measured changes with the unknowns, a column each that the scene has: of scenes that remember
+  // the way from ways beside it.
+  Result<inverse::Answer> answer_at(const Experiment& e, const Vector& x, bool with_jacobian) const;
+  Result<Matrix> differences(const Experiment& e, const Vector& x) const;
   // Of all experiments: answers over their scales, and errors.
   Result<bool> errors(const Vector& x, Vector& r, Matrix* jacobian);
   void tell(const Vector& x, const Matrix& jacobian, double cost, SceneFit& out) const;
@@ -147,7 +193,7 @@ Result<SceneDef> SceneSearch::scene_at(const Experiment& e, const Vector& x) con
   Overrides overrides;
   for (Eigen::Index i = 0; i < count(); ++i) {
     const Unknown& u = unknowns_[static_cast<std::size_t>(i)];
-    if (has(e, u)) overrides.push_back(override_text(u.path, u.value(x[i])));
+    if (u.place.in(e.scene)) overrides.push_back(override_text(u.path, u.value(x[i])));
   }
   return override_scene(e.scene, overrides);
 }
@@ -158,7 +204,17 @@ inverse::ParametersOf SceneSearch::parameters_of(const Experiment& e, const Scen
     std::vector<Parameter> out;
     for (Eigen::Index i = 0; i < count(); ++i) {
       const Unknown& u = unknowns_[static_cast<std::size_t>(i)];
-      if (!has(e, u)) continue;
+      if (!u.place.in(e.scene)) continue;
+      if (u.place.kind) {
+        const EffectId effect = built.ids(*u.place.kind)[u.place.effect];
+        out.push_back(
+            Parameter::constant_of(effect, u.value(x[i]), [&u, &scene](double value) -> Result<EffectPtr> {
+              const auto changed = override_scene(scene, {override_text(u.path, value)});
+              if (!changed) return changed.failure();
+              return effect_of(changed.value(), u.place);
+            }));
+        continue;
+      }
       const BodyId body = built.bodies[u.place.body];
       const std::string& region = scene.bodies[u.place.body].materials[u.place.material].region;
       if (u.place.key == "density") {
@@ -179,6 +235,46 @@ inverse::ParametersOf SceneSearch::parameters_of(const Experiment& e, const Scen
   };
 }
 
+Result<inverse::Answer> SceneSearch::answer_at(const Experiment& e, const Vector& x,
+                                               bool with_jacobian) const {
+  const auto scene = scene_at(e, x);
+  if (!scene) return scene.failure();
+  const bool beside = remembers(scene.value());
+  auto told =
+      inverse::answer(scene.value(), e.data,
+                      with_jacobian && !beside ? parameters_of(e, scene.value(), x) : inverse::ParametersOf(),
+                      options_.threads);
+  if (!told || !told.value().found || !with_jacobian || !beside) return told;
+  auto jacobian = differences(e, x);
+  if (!jacobian) return jacobian.failure();
+  told.value().jacobian = std::move(jacobian).value();
+  return told;
+}
+
+Result<Eigen::MatrixXd> SceneSearch::differences(const Experiment& e, const Vector& x) const {
+  constexpr double apart = 1e-4;  // of what goes to the search, which is about 1
+  Matrix out(static_cast<Eigen::Index>(e.data.values.size()), count());
+  Eigen::Index column = 0;
+  for (Eigen::Index i = 0; i < count(); ++i) {
+    const Unknown& u = unknowns_[static_cast<std::size_t>(i)];
+    if (!u.place.in(e.scene)) continue;
+    Vector less = x, more = x;
+    less[i] = std::max(u.least, x[i] - apart);
+    more[i] = std::min(u.most, x[i] + apart);
+    std::array<Vector, 2> values;
+    for (const bool up : {false, true}) {
+      const auto scene = scene_at(e, up ? more : less);
+      if (!scene) return scene.failure();
+      auto told = inverse::answer(scene.value(), e.data, {}, options_.threads);
+      if (!told) return told.failure();
+      if (!told.value().found) return Error{"beside " + u.path + " " + told.value().reason};
+      values[up ? 1 : 0] = std::move(told.value().values);
+    }
+    out.col(column++) = (values[1] - values[0]) / (u.value(more[i]) - u.value(less[i]));
+  }
+  return Matrix(out.leftCols(column));
+}
+
 Result<bool> SceneSearch::errors(const Vector& x, Vector& r, Matrix* jacobian) {
   r.resize(rows_);
   if (jacobian) jacobian->setZero(rows_, count());
@@ -186,11 +282,7 @@ Result<bool> SceneSearch::errors(const Vector& x, Vector& r, Matrix* jacobian) {
   Eigen::Index row = 0;
   for (std::size_t k = 0; k < experiments_.size(); ++k) {
     const Experiment& e = experiments_[k];
-    const auto scene = scene_at(e, x);
-    if (!scene) return scene.failure();
-    auto told = inverse::answer(scene.value(), e.data,
-                                jacobian ? parameters_of(e, scene.value(), x) : inverse::ParametersOf(),
-                                options_.threads);
+    auto told = answer_at(e, x, jacobian != nullptr);
     if (!told) return Error{e.name + ": " + told.error()};
     inverse::Answer& a = told.value();
     if (!a.found) {
@@ -206,7 +298,7 @@ Result<bool> SceneSearch::errors(const Vector& x, Vector& r, Matrix* jacobian) {
     Eigen::Index column = 0;
     for (Eigen::Index i = 0; jacobian && i < count(); ++i) {
       const Unknown& u = unknowns_[static_cast<std::size_t>(i)];
-      if (!has(e, u)) continue;
+      if (!u.place.in(e.scene)) continue;
       jacobian->block(row, i, n, 1) = u.slope(x[i]) * weight.cwiseProduct(a.jacobian.col(column++));
     }
     row += n;

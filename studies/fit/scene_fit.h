@@ -1,5 +1,5 @@
-// Constants of materials in scenes from measured curves: pressure and bend, pressure and volume, forces,
-// markers; several experiments at once.
+// Constants of materials and effects in scenes from measured curves: pressure and bend, pressure and volume,
+// forces, markers; several experiments at once.
 #pragma once
 
 #include "studies/fit/fit.h"
@@ -14,8 +14,8 @@ struct Experiment {
   double weight = 1;  // of its squared errors
 };
 
-// A number among the materials of a scene: "bodies[0].materials[0].young". Scenes that do not have the path
-// do not depend on it.
+// A number among the materials or effects of a scene: "bodies[0].materials[0].young", "springs[0].stiffness",
+// "contacts[0].friction". Scenes that do not have the path do not depend on it.
 struct Sought {
   std::string path;
   // Bounds; absent: from a thousandth to the thousandfold of a number that is positive at the start, 0 to 0.5
