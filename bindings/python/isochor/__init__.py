@@ -28,6 +28,7 @@ from .effects import *
 from .environment import Box, Environment
 from .errors import Cancelled, Error, NotConverged
 from .gradients import Gradients, Output, Parameter
+from .inverse import Constant, Design, Drive, Fits, LawFit, SceneFit, Target, design, drive, fit, fit_scene
 from .materials import *
 from .mesh import Mesh, box_mesh, read_mesh
 from .reports import (
@@ -59,15 +60,20 @@ __all__ = [
     "BodyMeasures",
     "Box",
     "Cancelled",
+    "Constant",
     "ContactPair",
     "Contacts",
+    "Design",
+    "Drive",
     "Energies",
     "Environment",
     "Error",
     "Fields",
     "Finding",
+    "Fits",
     "Gauge",
     "Gradients",
+    "LawFit",
     "LiveEffect",
     "Mesh",
     "MeshReport",
@@ -81,14 +87,20 @@ __all__ = [
     "Response",
     "Run",
     "Scene",
+    "SceneFit",
     "Search",
     "Size",
     "StepReport",
     "Study",
+    "Target",
     "Volume",
     "World",
     "WorldBatch",
     "box_mesh",
+    "design",
+    "drive",
+    "fit",
+    "fit_scene",
     "library",
     "read_mesh",
     "study",

@@ -73,5 +73,6 @@ void bind_worlds(py::module_& module);
 void bind_batches(py::module_& module);
 void bind_scenes(py::module_& module);
 void bind_catalog(py::module_& module);
+void bind_inverse(py::module_& module);
 
 }  // namespace isochor::python

@@ -31,6 +31,7 @@ PYBIND11_MODULE(_isochor, module) {
   bind_batches(module);
   bind_scenes(module);
   bind_catalog(module);
+  bind_inverse(module);
 }
 
 }  // namespace isochor::python
