@@ -1,13 +1,14 @@
 """fit, fit_scene, drive and design: the same answers as the commands, as objects."""
 
 import math
+import os
 import subprocess
 
 import numpy as np
 import pytest
 
 import isochor as iso
-from conftest import BINARY, SOURCE
+from conftest import SOURCE
 
 RNG = np.random.default_rng(20)
 
@@ -35,7 +36,7 @@ def test_constants_come_back_from_arrays(mode):
 def test_fits_of_a_file_are_those_of_the_command(tmp_path):
     curve = SOURCE / "studies/fit/elastomers/ecoflex_00_30.csv"
     done = subprocess.run(
-        [BINARY, "fit", curve, "--to", "2", "--law", "gent", "--law", "yeoh_3", "--json", "--out", tmp_path],
+        [os.environ["ISOCHOR_BINARY"], "fit", curve, "--to", "2", "--law", "gent", "--law", "yeoh_3", "--json", "--out", tmp_path],
         capture_output=True, text=True, check=True,
     )
     told = {f["law"]: f for f in iso.inverse.json.loads(done.stdout)["fits"]}
