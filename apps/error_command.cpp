@@ -23,8 +23,7 @@ void print_entries(const ErrorSearch& s) {
     table.add({e.name, number(e.value, 6), e.unit, number(e.indicator, 2),
                e.relative ? percent(*e.relative) : "", number(e.other, 6)});
   }
-  std::printf("\n%s  Without the errors of time steps and of the shape of the mesh.\n",
-              table.text("  ").c_str());
+  std::printf("\n%s  Without the error of the shape of the mesh.\n", table.text("  ").c_str());
 }
 
 // What the scene was changed by on the command line.
@@ -62,8 +61,11 @@ void print_trial(const Trial& t) {
     found = std::string(to_string(t.status)) + ": " + t.reason;
   else if (t.indicator)
     found = "within " + percent(*t.indicator) + " (" + t.held_by + ")";
+  else if (t.of_steps)
+    found = "steps within " + percent(*t.of_steps) + " (" + t.held_by + ")";
   else
     found = "nothing to compare with yet";
+  if (t.of_mesh) found += ", the mesh " + percent(*t.of_mesh);
   std::printf("  %-58s %8d unknowns %8s  %s\n", describe(t.setting).c_str(), t.unknowns,
               duration(t.seconds).c_str(), found.c_str());
   std::fflush(stdout);

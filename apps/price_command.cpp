@@ -7,6 +7,7 @@
 #include "apps/table.h"
 #include "scenes/run/machine_cost.h"
 #include "scenes/run/price.h"
+#include "scenes/run/step_errors.h"
 
 namespace isochor::app {
 
@@ -75,6 +76,8 @@ int price(const RunArguments& a, const SceneDef& scene) {
     print_json(found);
   else
     print_rows(found);
+  if (tables && steps_matter(scene))
+    std::printf("  for the steps of the scene; --error cuts them where they hold an answer up\n");
   return success;
 }
 

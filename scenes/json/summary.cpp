@@ -147,7 +147,9 @@ Json trial(const Trial& t) {
          {"predicted_s", t.predicted_seconds}};
   if (!t.reason.empty()) j["reason"] = t.reason;
   if (t.indicator && std::isfinite(*t.indicator)) j["indicator"] = *t.indicator;
-  if (t.indicator) j["held_by"] = t.held_by;
+  if (t.of_mesh && std::isfinite(*t.of_mesh)) j["of_mesh"] = *t.of_mesh;
+  if (t.of_steps && std::isfinite(*t.of_steps)) j["of_steps"] = *t.of_steps;
+  if (t.indicator || t.of_steps) j["held_by"] = t.held_by;
   return j;
 }
 

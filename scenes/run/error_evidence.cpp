@@ -110,6 +110,31 @@ Evidence from_three_local_meshes(std::span<const Answer> coarsest, std::span<con
   return from_three(coarsest, coarse, fine, kLargestLocalRatio);
 }
 
+Evidence together(const Evidence& a, const Evidence& b) {
+  Evidence out = a;
+  out.largest = 0;
+  out.held_by.clear();
+  for (AccuracyEntry& e : out.entries) {
+    const auto other = std::find_if(b.entries.begin(), b.entries.end(),
+                                    [&](const AccuracyEntry& o) { return o.name == e.name; });
+    const bool known = other != b.entries.end();
+    const double more = known ? other->relative.value_or(0) : std::numeric_limits<double>::infinity();
+    e.relative = e.relative.value_or(0) + more;
+    if (known) e.indicator += other->indicator;
+    if (out.held_by.empty() || *e.relative > out.largest) {
+      out.largest = *e.relative;
+      out.held_by = e.name;
+    }
+  }
+  // What has no evidence of its own in one of them.
+  for (const Evidence* one : {&a, &b}) {
+    if (std::isfinite(one->largest)) continue;
+    out.largest = one->largest;
+    out.held_by = one->held_by;
+  }
+  return out;
+}
+
 Evidence from_two_elements(std::span<const Answer> worse, std::span<const Answer> better,
                            const std::string& worse_name) {
   return collect(

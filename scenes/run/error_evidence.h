@@ -37,6 +37,9 @@ Evidence from_three_meshes(std::span<const Answer> coarsest, std::span<const Ans
 Evidence from_three_local_meshes(std::span<const Answer> coarsest, std::span<const Answer> coarse,
                                  std::span<const Answer> fine);
 
+// Errors of two causes that add up, entry by entry of the first.
+Evidence together(const Evidence& a, const Evidence& b);
+
 // Of two elements on one mesh: the difference is the error of the worse one, which bounds that of the better,
 // with a factor for corners where both gain little.
 inline constexpr double kElementSafety = 1.5;

@@ -13,6 +13,7 @@
 #include "scenes/run/error_forecast.h"
 #include "scenes/run/error_places.h"
 #include "scenes/run/outputs.h"
+#include "scenes/run/step_errors.h"
 
 namespace isochor {
 
@@ -28,6 +29,11 @@ constexpr double kHeld = 0.75;
 constexpr int kRoundsPerLevel = 3;
 // Cells that one that is refined makes, beside itself, and its neighbors, which must fit.
 constexpr double kMadeByOne = 10;
+// Steps are cut until their part of the error is no more than this; and so often at most.
+constexpr double kOfSteps = 0.4;
+constexpr int kMostHalved = 8;
+// What runs that tell of the steps may take of the time that is left.
+constexpr double kTimeForSteps = 0.3;
 
 std::string two_digits(double value) {
   char text[32];
@@ -48,6 +54,11 @@ class Search {
 
  private:
   bool reached() const { return out_.best && indicator(*out_.best) <= options_.error; }
+  bool mesh_reached() const;
+  void try_steps();
+  void try_both();
+  RunResult run_trial(const Setting& setting, bool origins);
+  Evidence with_steps(const Evidence& mesh, int halved) const;
   double indicator(std::size_t trial) const { return out_.trials[trial].indicator.value_or(kNever); }
   double elapsed() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
   std::optional<double> time_left() const;
@@ -76,6 +87,12 @@ class Search {
   ErrorForecast forecast_;
   std::vector<std::string> closed_;  // by ladder: why it has no next run; empty: it has
   std::vector<Setting> next_;        // by ladder, of those where some cells are refined
+  StepErrors steps_;
+  int halved_ = 0;               // steps of the answer
+  double of_steps_ = 0;          // their part of the error
+  std::string no_shorter_;       // why steps are not cut further though they are too long
+  std::vector<Answer> answers_;  // of the best
+  Evidence evidence_;            // of its mesh and element alone
   Clock::time_point start_ = Clock::now();
   bool out_of_time_ = false;
 };
@@ -213,27 +230,34 @@ void Search::choose_cells(std::size_t l, const RunResult& result) {
   ladder.growth = std::min(8.0, 1 + kMadeByOne * marked / std::max<double>(1, result.elements));
 }
 
-bool Search::try_next(std::size_t l) {
-  ErrorLadder& ladder = forecast_.ladders[l];
-  const int level = ladder.levels();
+RunResult Search::run_trial(const Setting& setting, bool origins) {
   Trial trial;
-  trial.setting = next_setting(l);
-  if (const auto cost = forecast_.cost(l, level)) trial.predicted_seconds = cost->seconds();
-  const SceneDef scene = with_setting(scene_, choices_, trial.setting);
+  trial.setting = setting;
   RunOptions options = options_.run;
   options.folder = trial_folder();
   options.log = {};
   options.on_step = {};
-  options.origins = wants_origins(l);
+  options.origins = origins;
   if (const auto left = time_left()) options.budget = std::max(1e-3, *left);
-  RunResult result = run_scene(scene, options);
+  RunResult result = run_scene(with_setting(scene_, choices_, setting), options);
   trial.status = result.status;
   trial.reason = result.reason;
   trial.elements = result.elements;
   trial.unknowns = result.size.displacement_unknowns + result.size.multipliers;
   trial.seconds = result.wall_s;
-  const std::size_t number = out_.trials.size();
-  out_.trials.push_back(trial);
+  out_.trials.push_back(std::move(trial));
+  return result;
+}
+
+bool Search::try_next(std::size_t l) {
+  ErrorLadder& ladder = forecast_.ladders[l];
+  const int level = ladder.levels();
+  const bool origins = wants_origins(l);
+  const auto cost = forecast_.cost(l, level);
+  RunResult result = run_trial(next_setting(l), origins);
+  const std::size_t number = out_.trials.size() - 1;
+  if (cost) out_.trials[number].predicted_seconds = cost->seconds();
+  const Trial trial = out_.trials[number];
   bool goes_on = true;
   if (result.status == RunStatus::converged) {
     ladder.answers.push_back(answers_of(result));
@@ -244,15 +268,27 @@ bool Search::try_next(std::size_t l) {
         other.answers = ladder.answers;
         other.costs = ladder.costs;
       }
-      if (options.origins && (k == l ? !of_all(l) : other.local_of == l)) choose_cells(k, result);
+      if (origins && (k == l ? !of_all(l) : other.local_of == l)) choose_cells(k, result);
     }
-    const Evidence evidence = forecast_.evidence(l).value_or(Evidence{});
-    if (!evidence.how.empty()) {
+    const Evidence of_mesh = forecast_.evidence(l).value_or(Evidence{});
+    const Evidence evidence = with_steps(of_mesh, 0);
+    if (!of_mesh.how.empty()) {
+      if (choices_.steps_matter) out_.trials[number].of_mesh = of_mesh.largest;
       out_.trials[number].indicator = evidence.largest;
       out_.trials[number].held_by = evidence.held_by;
       out_.trials[number].how = evidence.how;
     }
-    if (!out_.best || indicator(number) < indicator(*out_.best)) goes_on = adopt(number, result, evidence);
+    const auto better = [&] {
+      if (!out_.best) return true;
+      const Trial &is = out_.trials[number], &was = out_.trials[*out_.best];
+      if (choices_.steps_matter) return is.of_mesh.value_or(kNever) < was.of_mesh.value_or(kNever);
+      return indicator(number) < indicator(*out_.best);
+    };
+    if (better()) {
+      answers_ = answers_of(result);
+      evidence_ = of_mesh;
+      goes_on = adopt(number, result, evidence);
+    }
   } else {
     closed_[l] = std::string(to_string(result.status)) + ": " + result.reason;
     if (!out_.best) out_.result = std::move(result);
@@ -314,6 +350,87 @@ bool Search::adopt(std::size_t trial, const RunResult& result, const Evidence& e
   return false;
 }
 
+// --- Steps ------------------------------------------------------------------------------------------------
+
+bool Search::mesh_reached() const {
+  if (!choices_.steps_matter) return reached();
+  // A mesh far better than its steps is paid for nothing.
+  const double steps = no_shorter_.empty() ? 0 : 0.5 * of_steps_;
+  const double wanted = std::max({options_.error - of_steps_, (1 - kOfSteps) * options_.error, steps});
+  return out_.best && out_.trials[*out_.best].of_mesh.value_or(kNever) <= wanted;
+}
+
+Evidence Search::with_steps(const Evidence& mesh, int halved) const {
+  if (steps_.runs() < 2 || mesh.how.empty()) return mesh;
+  Evidence out = together(mesh, steps_.evidence(halved));
+  out.how = mesh.how + "; the steps by those of half their length";
+  return out;
+}
+
+// Cuts the steps on the mesh of the scene until their part of the error is small enough.
+void Search::try_steps() {
+  const std::size_t l = choices_.elements.size() > 1 ? 1 : 0;
+  if (!try_next(l) || forecast_.ladders[l].levels() == 0) return;
+  steps_.add(forecast_.ladders[l].answers[0]);
+  const double wanted = kOfSteps * options_.error;
+  double seconds = out_.trials.back().seconds;
+  while (!steps_.within(wanted)) {
+    const int halved = steps_.runs();
+    const auto left = time_left();
+    if (halved + (steps_.runs() > 2 ? steps_.missing(wanted) - 1 : 0) > kMostHalved)
+      no_shorter_ = "they would have to be cut in more than " + std::to_string(1 << kMostHalved);
+    else if (left && 2 * seconds > kTimeForSteps * *left)
+      no_shorter_ = "half of them would take too much of the budget to look at";
+    if (!no_shorter_.empty()) break;
+    const RunResult result = run_trial({forecast_.ladders[l].element, 0, {}, halved}, false);
+    Trial& trial = out_.trials.back();
+    seconds = std::max(trial.seconds, seconds);
+    if (result.status == RunStatus::converged) {
+      steps_.add(answers_of(result));
+      const Evidence evidence = steps_.evidence(halved);
+      trial.of_steps = evidence.largest;
+      trial.held_by = evidence.held_by;
+    } else {
+      no_shorter_ = std::string(to_string(result.status)) + ": " + result.reason;
+    }
+    if (options_.on_trial) options_.on_trial(trial);
+    if (!no_shorter_.empty() || (options_.run.stop && options_.run.stop())) break;
+  }
+  if (steps_.runs() < 2) return;
+  halved_ = steps_.within(wanted).value_or(steps_.runs() - 1);
+  of_steps_ = steps_.evidence(halved_).largest;
+}
+
+// The best mesh with the steps that were found: what is left over is where mesh and steps do not add up.
+void Search::try_both() {
+  Setting setting = out_.trials[*out_.best].setting;
+  setting.halved = halved_;
+  const RunResult result = run_trial(setting, true);
+  const std::size_t number = out_.trials.size() - 1;
+  if (result.status == RunStatus::converged) {
+    const auto answers = answers_of(result);
+    const Evidence rest = from_interplay(answers_, steps_.run(0), steps_.run(halved_), answers);
+    Evidence evidence = together(from_two_meshes(answers, answers), with_steps(evidence_, halved_));
+    evidence = together(evidence, rest);
+    evidence.how = with_steps(evidence_, halved_).how;
+    for (AccuracyEntry& e : evidence.entries) {
+      for (const AccuracyEntry& mesh : evidence_.entries) {
+        if (mesh.name == e.name) e.other = mesh.other;
+      }
+    }
+    Trial& trial = out_.trials[number];
+    trial.indicator = evidence.largest;
+    trial.held_by = evidence.held_by;
+    trial.how = evidence.how;
+    trial.of_mesh = evidence_.largest;
+    trial.of_steps = of_steps_;
+    if (*trial.indicator <= indicator(*out_.best)) adopt(number, result, evidence);
+  } else {
+    no_shorter_ = std::string(to_string(result.status)) + ": " + result.reason;
+  }
+  if (options_.on_trial) options_.on_trial(out_.trials[number]);
+}
+
 // --- How it ends ------------------------------------------------------------------------------------------
 
 std::string Search::why_no_more() const {
@@ -323,6 +440,11 @@ std::string Search::why_no_more() const {
       text += (text.empty() ? "" : "; ") + element_text(forecast_.ladders[l].element) +
               (of_all(l) ? "" : " refined where it counts") + ": " + closed_[l];
   }
+  if (no_shorter_.empty()) return text;
+  text += (text.empty() ? "" : "; ") + ("shorter steps: " + no_shorter_);
+  if (scene_.analysis.type == AnalysisType::dynamics && scene_.analysis.scheme == SchemeWord::implicit_euler)
+    text +=
+        " (implicit_euler is of first order; bdf2 as analysis.scheme needs fewer of them in smooth motion)";
   return text;
 }
 
@@ -373,7 +495,15 @@ void Search::conclude() {
 }
 
 void Search::run() {
-  while (!reached()) {
+  if (choices_.steps_matter) try_steps();
+  const auto may = [&] {
+    if (options_.run.stop && options_.run.stop()) return false;
+    if (out_.trials.empty()) return true;
+    const RunStatus last = out_.trials.back().status;
+    return last != RunStatus::interrupted && last != RunStatus::not_written && last != RunStatus::budget &&
+           last != RunStatus::failed;
+  };
+  while (!mesh_reached() && may()) {
     if (const auto left = time_left(); left && *left <= 0) {
       out_of_time_ = true;
       break;
@@ -382,6 +512,7 @@ void Search::run() {
     if (!next || (options_.run.stop && options_.run.stop())) break;
     if (!try_next(*next)) break;
   }
+  if (halved_ > 0 && out_.best && !evidence_.how.empty() && may()) try_both();
   // Of a search that was stopped before any run had ended, what there is of the first.
   std::error_code code;
   const std::string left = trial_folder();

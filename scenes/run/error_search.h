@@ -20,7 +20,10 @@ struct Trial {
   Index elements = 0, unknowns = 0;
   double seconds = 0, predicted_seconds = 0;  // predicted 0: there was nothing to predict from
   std::optional<double> indicator;            // the largest of all metrics and probes, relative
-  std::string held_by, how;                   // whose it is, and how it is known
+  // Of scenes whose steps matter: the part of the mesh and element, and of the steps, each the largest of
+  // all; the mesh has none where the run is one of those that tell of the steps.
+  std::optional<double> of_mesh, of_steps;
+  std::string held_by, how;  // whose it is, and how it is known
 };
 
 enum class SearchEnd : std::uint8_t {

@@ -1,11 +1,13 @@
 #include "scenes/run/setting.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 #include "scenes/body_parts.h"
 #include "scenes/check_values.h"
 #include "scenes/run/outputs.h"
+#include "scenes/run/step_errors.h"
 
 namespace isochor {
 
@@ -59,12 +61,14 @@ std::string describe(const Setting& s) {
   if (s.refine > 0) mesh = "mesh refined " + times(static_cast<std::size_t>(s.refine));
   if (!s.rounds.empty())
     mesh = (s.refine > 0 ? mesh + ", then " : "mesh refined ") + times(s.rounds.size()) + " where it counts";
-  return element_text(s.element) + ", " + mesh;
+  const std::string steps = s.halved > 0 ? ", steps cut in " + std::to_string(1 << s.halved) : "";
+  return element_text(s.element) + ", " + mesh + steps;
 }
 
 Result<SettingChoices> setting_choices(const SceneDef& scene) {
   SettingChoices out;
   out.most_levels = kMostRefined;
+  out.steps_matter = steps_matter(scene);
   bool any = false;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const SceneBody& body = scene.bodies[b];
@@ -106,8 +110,28 @@ Result<SettingChoices> setting_choices(const SceneDef& scene) {
   return out;
 }
 
+namespace {
+
+// What is reported and written stays at the same times.
+void cut_steps(SceneDef& scene, int halved) {
+  if (halved == 0) return;
+  AnalysisDef& a = scene.analysis;
+  const int parts = 1 << halved;
+  const int steps = plan_steps(a).steps * parts;
+  if (a.step)
+    a.step = a.duration / steps;
+  else
+    a.steps = steps;
+  a.options.time_error /= parts;
+  scene.outputs.every *= parts;
+  scene.outputs.checkpoint_steps *= parts;
+}
+
+}  // namespace
+
 SceneDef with_setting(const SceneDef& scene, const SettingChoices& choices, const Setting& setting) {
   SceneDef out = scene;
+  cut_steps(out, setting.halved);
   for (std::size_t b = 0; b < out.bodies.size(); ++b) {
     if (setting.element && choices.linear_tets[b]) out.bodies[b].element = *setting.element;
     out.bodies[b].refine += setting.refine;
@@ -122,6 +146,13 @@ SceneDef with_setting(const SceneDef& scene, const SettingChoices& choices, cons
 }
 
 namespace {
+
+// All of them, so that the run is the same to the bit.
+std::string digits_of(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", value);
+  return text;
+}
 
 std::string file_of_round(const std::string& folder, std::size_t body, std::size_t round) {
   return (std::filesystem::path(folder) /
@@ -161,6 +192,16 @@ std::string overrides_for(const SceneDef& scene, const SettingChoices& choices, 
     }
     if (!places.empty())
       out += (out.empty() ? "" : " ") + ("--set '" + place("bodies", b) + ".refine_where=[" + places + "]'");
+  }
+  const AnalysisDef &is = scene.analysis, &be = wanted.analysis;
+  const auto set = [&](const std::string& what) { out += (out.empty() ? "--set " : " --set ") + what; };
+  if (setting.halved > 0) {
+    if (be.step)
+      set("analysis.step=" + digits_of(*be.step));
+    else
+      set("analysis.steps=" + std::to_string(be.steps));
+    if (is.options.time_error > 0) set("analysis.time_error=" + digits_of(be.options.time_error));
+    if (scene.outputs.every > 0) set("outputs.every=" + std::to_string(wanted.outputs.every));
   }
   return out;
 }

@@ -15,6 +15,7 @@ struct Setting {
   int refine = 0;                  // levels beyond what the scene has
   // Cells that are refined after that, by round and body, in the mesh of the round.
   std::vector<std::vector<std::vector<Index>>> rounds = {};
+  int halved = 0;  // times that the steps are cut in two
   friend bool operator==(const Setting&, const Setting&) = default;
 };
 
@@ -27,10 +28,11 @@ struct SettingChoices {
   std::vector<bool> linear_tets;  // by body: its mesh has Tet4 cells, which leave a choice
   std::vector<Index> cells;       // by body, as the scene is
   std::vector<std::optional<Element>>
-      elements;           // from the cheapest to the best; one without value: no choice
-  int most_levels = 0;    // before a body cannot be refined further
-  bool can_local = true;  // cells can be refined by themselves
-  FlatFaces faces;        // of the body whose flat faces cut off most
+      elements;               // from the cheapest to the best; one without value: no choice
+  int most_levels = 0;        // before a body cannot be refined further
+  bool can_local = true;      // cells can be refined by themselves
+  bool steps_matter = false;  // steps of another length have another answer
+  FlatFaces faces;            // of the body whose flat faces cut off most
   std::string faces_of;
 };
 // Reads the meshes. An error names the body that cannot be refined.

@@ -10,6 +10,7 @@
 #include "scenes/run/error_forecast.h"
 #include "scenes/run/machine_cost.h"
 #include "scenes/run/price.h"
+#include "scenes/run/step_errors.h"
 #include "small_scene.h"
 
 using namespace isochor;
@@ -254,4 +255,85 @@ TEST_CASE("costs grow by what is counted, and a damaged cache of them is none") 
   CHECK_FALSE(cost_model_from_text(j.dump(), 2));
   j["elements"][0][0] = "15";
   CHECK_FALSE(cost_model_from_text(j.dump(), 2));
+}
+
+namespace {
+
+// Falls freely while gravity grows as g t: n steps of implicit Euler of length h fall by g h^3 n (n + 1) (n +
+// 2) / 6, whatever the mesh.
+SceneDef falling_block(double step) {
+  SceneDef s = test::small_scene();
+  s.dirichlet.clear();
+  s.tractions.clear();
+  s.analysis.type = AnalysisType::dynamics;
+  s.analysis.options.gravity = {-9.81, 0, 0};
+  s.analysis.duration = 0.12;
+  s.analysis.step = step;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("steps are cut until their part of the error is small, and no more than that") {
+  for (const double step : {0.03, 0.012, 0.004}) {
+    const ErrorSearch s = search(falling_block(step), 0.02);
+    CAPTURE(step, s.sentence);
+    REQUIRE(s.end == SearchEnd::reached);
+    const double h = step / (1 << s.trials[*s.best].setting.halved), t = 0.12;
+    const double error = std::abs(s.result.metrics[0].value) / (9.81 * t * t * t / 6) - 1;
+    CHECK(error == Approx((1 + h / t) * (1 + 2 * h / t) - 1).epsilon(1e-3));
+    CHECK(error < 0.4 * 0.02);
+    CHECK(2.2 * error > 0.4 * 0.02);  // with steps of twice the length it would not be
+    // The estimate is that error and little more: meshes play no part.
+    CHECK(*s.trials[*s.best].indicator >= 0.9 * error);
+    CHECK(*s.trials[*s.best].indicator <= 2 * error);
+    CHECK_THAT(s.overrides, ContainsSubstring("analysis.step="));
+    CHECK(run_scene(s.scene, {}).state_hash == s.result.state_hash);
+  }
+}
+
+TEST_CASE("steps that cannot be cut enough are named, and what the answer is worth with them") {
+  const ErrorSearch s = search(falling_block(0.12), 1e-5);
+  CHECK(s.end == SearchEnd::not_reached);
+  CHECK_THAT(s.sentence,
+             ContainsSubstring("shorter steps") && ContainsSubstring("256") && ContainsSubstring("bdf2"));
+  REQUIRE(s.best);
+  CHECK(*s.trials[*s.best].indicator > 0.05);
+}
+
+TEST_CASE("steps are looked at where they have a part in the answer alone") {
+  SceneDef scene = test::small_scene();
+  CHECK_FALSE(steps_matter(scene));
+  for (const Trial& t : search(scene, 0.05).trials) CHECK_FALSE(t.of_steps.has_value());
+  SceneDef rubs = scene;
+  rubs.contacts.emplace_back();
+  CHECK_FALSE(steps_matter(rubs));
+  rubs.contacts[0].friction = 0.1;
+  CHECK(steps_matter(rubs));
+  scene.bodies[0].materials[0].prony = {{0.5, 1}};
+  CHECK_FALSE(steps_matter(scene));
+  scene.bodies[0].materials[0].static_time = StaticTime::seconds;
+  CHECK(steps_matter(scene));
+  CHECK(steps_matter(falling_block(0.01)));
+}
+
+TEST_CASE("errors of steps are bounded where they are of first and second order") {
+  for (const double order : {1.0, 2.0}) {
+    StepErrors steps;
+    for (int k = 0; k < 4; ++k) steps.add(answers({1 + 0.1 * std::pow(2, -order * k)}));
+    for (int k = 0; k < 4; ++k) {
+      CAPTURE(order, k);
+      const double error = 0.1 * std::pow(2, -order * k);
+      CHECK(steps.evidence(k).entries[0].indicator >= 0.999 * error);
+      CHECK(steps.evidence(k).entries[0].indicator <= 2 * error);
+    }
+    CHECK(steps.within(0.2) == 0);
+    CHECK_FALSE(steps.within(1e-6));
+  }
+  // Mesh and steps that add up leave nothing over; what they do together is told.
+  CHECK(from_interplay(answers({2.0}), answers({1.0}), answers({1.25}), answers({2.25})).largest == 0);
+  CHECK(from_interplay(answers({2.0}), answers({1.0}), answers({1.25}), answers({2.5})).largest ==
+        Approx(0.1));
+  CHECK(together(from_two_meshes(answers({1.0}), answers({2.0})), Evidence{}).largest ==
+        std::numeric_limits<double>::infinity());
 }
