@@ -83,6 +83,8 @@ struct World::Impl::Equilibrium {
   std::optional<LagTerms> lag;  // of an unsymmetric matrix
   std::vector<Vec3> dx;
   std::vector<double> dlambda;
+  // Functions that make constants were held against the scene before, at another increment of the same way.
+  bool compared = false;
 
  private:
   SaddleProblem problem() {
@@ -92,6 +94,7 @@ struct World::Impl::Equilibrium {
   }
   EquationsAt present() { return {w.system(), w.assembly(), *w.data, w.instances, w.said.builder, inertia}; }
   Result<void> check_balance();
+  bool is_here(Equations off) const;
   Result<void> seed_gauge(const Output& output, OutputSeed& seed);
   Result<void> seed_reaction(const Output& output, OutputSeed& seed);
   Result<void> seed_positions(const Output& output, OutputSeed& seed);

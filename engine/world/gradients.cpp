@@ -55,6 +55,16 @@ World::Impl::Equilibrium::Equilibrium(Impl& world, const Inertia* its_inertia)
       dx(world.state.x.size()),
       dlambda(world.state.lambda.size()) {}
 
+// To rounding, what a scene that was compiled again has in place of the present one.
+bool World::Impl::Equilibrium::is_here(Equations off) const {
+  off.add(-1, here);
+  double row = 0;
+  for (std::size_t r = 0; r < off.theta.size(); ++r)
+    row = std::max(row, std::abs(off.theta[r]) / w.system().row_measure()[r]);
+  return largest(off.force) <= 1e-9 * force_scale_ && row <= 1e-9 &&
+         largest(off.position) <= 1e-12 * w.system().length();
+}
+
 // A state that was not solved for, or of a body in motion, has no derivative by these equations.
 Result<void> World::Impl::Equilibrium::check_balance() {
   constexpr double limit = 1e-5;

@@ -113,6 +113,7 @@ class World::Impl::Trajectory {
   std::vector<std::pair<Index, Moment>> kept_;  // by step, ascending; beside start_
   Index most_at_once_ = 0, steps_made_ = 0;
   std::size_t lists_ = 2;
+  bool compared_ = false;  // parameters with the scene, at an increment
 };
 
 // What the query is refused with; and, as its own, what World::gradients() says about a step or an entry of a

@@ -184,6 +184,7 @@ std::vector<Vec3> World::Impl::Trajectory::dissipation_back(const Increment& inc
 template <class Visit>
 Result<void> World::Impl::Trajectory::in_increment(Index n, Gradients& out, Visit&& visit) {
   Equilibrium eq(w_);
+  eq.compared = compared_;
   if (auto r = watch(eq, n); !r) return r;
   Result<std::vector<OutputSeed>> seeds(std::vector<OutputSeed>{});
   // Functions of positions alone, of those at its end.
@@ -199,6 +200,7 @@ Result<void> World::Impl::Trajectory::in_increment(Index n, Gradients& out, Visi
   if (!seeds) return seeds.failure();
   const auto change = changes(eq);
   if (!change) return change.failure();
+  compared_ = true;
   if (auto r = visit(Linearized{n, increment, eq, seeds.value(), change.value()}); !r) return r;
   look_for_edges(n, out);
   return {};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "engine/base/base.h"
 #include "isochor/mesh_io.h"
@@ -46,6 +47,24 @@ bool on_linear_files(const SceneDef& scene) {
   });
 }
 
+// A component of a displacement that is less of it than this is worth as much of the whole: what is left of
+// symmetry on an unsymmetric mesh has no error of its own that refinement could be asked to halve.
+constexpr double kLeastComponent = 0.1;
+
+// What the displacement of a probe that a metric is a component of amounts to, in the unit of the metric; 0:
+// it is none.
+double whole_of(const MetricDef& m, const RunResult& result) {
+  const auto probe = std::find(result.probes.begin(), result.probes.end(), m.of);
+  if (m.quantity != Quantity::displacement || probe == result.probes.end() || result.records.empty())
+    return 0;
+  const auto off = [&](const StepRecord& r) { return std::abs(r.time - m.time.value_or(r.time)); };
+  const auto then =
+      m.time ? std::min_element(result.records.begin(), result.records.end(),
+                                [&](const StepRecord& a, const StepRecord& b) { return off(a) < off(b); })
+             : std::prev(result.records.end());
+  return std::abs(m.scale) * norm(then->probes[static_cast<std::size_t>(probe - result.probes.begin())]);
+}
+
 }  // namespace
 
 double Answer::shown() const {
@@ -62,7 +81,9 @@ std::vector<Answer> answers_of(const RunResult& result) {
   for (const MetricValue& m : result.metrics) {
     if (!has_error(m.def.quantity) || !m.reached) continue;
     // A change of volume is relative to the volume as it is.
-    const double size = m.def.quantity == Quantity::volume_change ? std::abs(m.def.scale) : std::abs(m.value);
+    const double size = m.def.quantity == Quantity::volume_change
+                            ? std::abs(m.def.scale)
+                            : std::max(std::abs(m.value), kLeastComponent * whole_of(m.def, result));
     out.push_back({m.def.name, m.def.unit, {m.value, 0, 0}, size, false});
   }
   for (std::size_t p = 0; !result.records.empty() && p < result.probes.size(); ++p) {
