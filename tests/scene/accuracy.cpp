@@ -111,6 +111,39 @@ TEST_CASE("indicators cover metrics and probes, not residuals") {
   CHECK(j["status"] == "converged");
 }
 
+TEST_CASE("components of a displacement are held against a tenth of it at least, at the time of the metric") {
+  SceneDef scene = test::small_scene();
+  scene.analysis.steps = 2;
+  for (const std::optional<double> time : {std::optional<double>{}, {0.5}}) {
+    for (const Component c : {Component::x, Component::y, Component::z, Component::magnitude}) {
+      MetricDef m;
+      m.name = "along " + std::to_string(scene.metrics.size());
+      m.of = scene.probes.at(0).name;
+      m.component = c;
+      m.scale = -1e3;
+      m.time = time;
+      scene.metrics.push_back(m);
+    }
+  }
+  const RunResult r = run_scene(scene, {});
+  REQUIRE(r.status == RunStatus::converged);
+  const auto answers = answers_of(r);
+  REQUIRE(answers.size() == 10);
+  int small = 0;
+  for (const std::size_t first : {1, 5}) {
+    const double whole = answers[first + 3].size;
+    CHECK(whole > 0);
+    const Vec3& u = r.records.at(first == 1 ? 1 : 0).probes.at(0);
+    CHECK(whole == Approx(1e3 * std::hypot(u.x, u.y, u.z)));
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double own = std::abs(answers[first + c].value.x);
+      CHECK(answers[first + c].size == Approx(std::max(own, 0.1 * whole)));
+      small += own < 0.1 * whole ? 1 : 0;
+    }
+  }
+  CHECK(small > 0);
+}
+
 TEST_CASE("every answer of an equilibrium says where its error comes from") {
   const SceneDef scene = test::small_scene();
   RunOptions options;
