@@ -145,18 +145,6 @@ TEST_CASE("what is not shared out over ranks is refused by name, once, on all of
     CHECK(count(o.err, "run on one process") == 1);
     CHECK(shell.run(0, "scene.json").code == 0);
   };
-  Json folds = block();
-  folds["surface_contacts"].push_back({{"name", "folds"}});
-  refused(folds, "changes with what is close");
-  Json rubs = block();
-  rubs["contacts"].push_back({{"name", "rubs"},
-                              {"friction", 0.3},
-                              {"coupling", "coupled"},
-                              {"obstacle", {{"position", {0, 0, -0.5}}}}});
-  refused(rubs, "is coupled");
-  Json path = block();
-  path["analysis"]["path_step"] = 0.2;
-  refused(path, "continuation()");
   Json dual = block();
   dual["analysis"]["method"] = "augmented_gradients";
   refused(dual, "method augmented_gradients");
