@@ -19,6 +19,8 @@ constexpr double kAcceptable = 1e-10;           // residual of factors, as Solve
 constexpr Index kMostToFactor = 200'000;        // unknowns that the automatic choice factors without need
 constexpr Index kMostToFallBackOn = 1'000'000;  // and after iterations have failed
 
+// Takes symmetric matrices, and unsymmetric ones as solvers of make_unsymmetric_solver() do: told by how many
+// values there are.
 class PetscSolver final : public LinearSolver {
  public:
   PetscSolver(const Ranks& ranks, Solver kind, bool prefer_iterative)
@@ -55,7 +57,7 @@ class PetscSolver final : public LinearSolver {
 
   const Ranks& ranks_;
   Solver kind_;
-  bool prefer_iterative_, iterates_ = false, factored_ = false;
+  bool prefer_iterative_, iterates_ = false, factored_ = false, symmetric_ = true;
   std::string why_;
   std::vector<UnknownGeometry> geometry_;
   std::span<const double> scale_, values_;
@@ -94,7 +96,7 @@ void PetscSolver::prepare() {
   if (direct_) check(KSPDestroy(&direct_), "starting anew");
   krylov_.reset();
   if (pattern_->size == 0) return;
-  matrix_.analyze(*pattern_, geometry_, iterates_);
+  matrix_.analyze(*pattern_, geometry_, iterates_, symmetric_);
 }
 
 void PetscSolver::make_direct() {
@@ -103,7 +105,7 @@ void PetscSolver::make_direct() {
   check(KSPSetOperators(direct_, matrix_.matrix(), matrix_.matrix()), "making MUMPS");
   check(KSPSetType(direct_, KSPPREONLY), "making MUMPS");
   check(KSPGetPC(direct_, &pc), "making MUMPS");
-  check(PCSetType(pc, PCCHOLESKY), "making MUMPS");
+  check(PCSetType(pc, symmetric_ ? PCCHOLESKY : PCLU), "making MUMPS");
   check(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS), "making MUMPS");
   check(KSPSetFromOptions(direct_), "making MUMPS");
 }
@@ -142,8 +144,11 @@ FactorReport PetscSolver::factor_direct() {
     check(KSPDestroy(&direct_), "factoring");
     return report;
   }
-  PetscInt negative = 0, zero = 0, positive = 0, nonzeros = 0;
-  check(MatGetInertia(factor, &negative, &zero, &positive), "asking for the inertia");
+  PetscInt negative = -1, zero = 0, positive = 0, nonzeros = 0;
+  if (symmetric_)
+    check(MatGetInertia(factor, &negative, &zero, &positive), "asking for the inertia");
+  else
+    check(MatMumpsGetInfog(factor, 28, &zero), "asking for null pivots");
   check(MatMumpsGetInfog(factor, 29, &nonzeros), "factoring");
   report.negative_pivots = static_cast<Index>(negative);
   report.factor_nonzeros = nonzeros < 0 ? -std::int64_t{nonzeros} * 1'000'000 : nonzeros;
@@ -158,7 +163,8 @@ FactorReport PetscSolver::factor(std::span<const double> values) {
   factored_ = false;
   values_ = values;
   FactorReport report;
-  if (pattern_ == nullptr || values.size() != static_cast<std::size_t>(pattern_->nonzeros())) {
+  const std::size_t entries = pattern_ == nullptr ? 0 : static_cast<std::size_t>(pattern_->nonzeros());
+  if (pattern_ == nullptr || (values.size() != entries && values.size() != 2 * entries)) {
     report.status = FactorStatus::failed;
     report.message = pattern_ == nullptr ? "factor was called without a successful analyze"
                                          : "the number of values is not that of the analyzed pattern";
@@ -168,6 +174,11 @@ FactorReport PetscSolver::factor(std::span<const double> values) {
     report.negative_pivots = 0;
     factored_ = true;
     return report;
+  }
+  if (const bool symmetric = values.size() == entries; symmetric != symmetric_) {
+    symmetric_ = symmetric;
+    iterates_ = iterates_ && symmetric;
+    prepare();
   }
   if (!matrix_.set_values(values)) {
     report.status = FactorStatus::not_finite;

@@ -19,11 +19,11 @@ PetscInt SharedMatrix::rows_here() const {
 }
 
 void SharedMatrix::analyze(const SymmetricPattern& pattern, std::span<const UnknownGeometry> geometry,
-                           bool padded) {
+                           bool padded, bool symmetric) {
   clear();
   pattern_ = &pattern;
   number(pattern, geometry, padded);
-  preallocate(pattern);
+  preallocate(pattern, symmetric);
 }
 
 void SharedMatrix::number(const SymmetricPattern& pattern, std::span<const UnknownGeometry> geometry,
@@ -64,14 +64,16 @@ void SharedMatrix::number(const SymmetricPattern& pattern, std::span<const Unkno
   gathered_.resize(static_cast<std::size_t>(begin_.back()));
 }
 
-void SharedMatrix::preallocate(const SymmetricPattern& pattern) {
+void SharedMatrix::preallocate(const SymmetricPattern& pattern, bool symmetric) {
   const auto here = static_cast<PetscInt>(begin_[at(rank()) + 1] - begin_[at(rank())]);
   const MPI_Comm comm = PETSC_COMM_WORLD;
   check(MatCreate(comm, &matrix_), "making a matrix");
   check(MatSetSizes(matrix_, here, here, size(), size()), "making a matrix");
   check(MatSetType(matrix_, MATAIJ), "making a matrix");
-  check(MatSetOption(matrix_, MAT_SYMMETRIC, PETSC_TRUE), "making a matrix");
-  check(MatSetOption(matrix_, MAT_SYMMETRY_ETERNAL, PETSC_TRUE), "making a matrix");
+  if (symmetric) {
+    check(MatSetOption(matrix_, MAT_SYMMETRIC, PETSC_TRUE), "making a matrix");
+    check(MatSetOption(matrix_, MAT_SYMMETRY_ETERNAL, PETSC_TRUE), "making a matrix");
+  }
   // Both triangles of what this rank has; PETSc sends what belongs to the lines of others.
   std::vector<PetscInt> row, column;
   const auto entries = 2 * static_cast<std::size_t>(pattern.nonzeros()) + padding_.size();
@@ -105,12 +107,14 @@ void SharedMatrix::preallocate(const SymmetricPattern& pattern) {
 bool SharedMatrix::set_values(std::span<const double> values) {
   std::size_t to = 0;
   double strange = 0;
+  const auto entries = static_cast<std::size_t>(pattern_->nonzeros());
+  const auto mirrored = values.size() > entries ? values.subspan(entries) : values;
   for (Index c = 0; c < pattern_->size; ++c) {
     for (auto k = pattern_->column_start[at(c)]; k < pattern_->column_start[at(c) + 1]; ++k) {
-      const double v = values[static_cast<std::size_t>(k)];
-      if (!std::isfinite(v)) strange = 1;
+      const double v = values[static_cast<std::size_t>(k)], w = mirrored[static_cast<std::size_t>(k)];
+      if (!std::isfinite(v) || !std::isfinite(w)) strange = 1;
       value_[to++] = v;
-      if (pattern_->row[static_cast<std::size_t>(k)] != c) value_[to++] = v;
+      if (pattern_->row[static_cast<std::size_t>(k)] != c) value_[to++] = w;
     }
   }
   std::fill(value_.begin() + static_cast<std::ptrdiff_t>(to), value_.end(), 1.0);

@@ -21,9 +21,12 @@ class SharedMatrix {
   SharedMatrix& operator=(const SharedMatrix&) = delete;
 
   // PETSc numbers unknowns by rank: on each the displacements of its nodes, then its multipliers. `padded`:
-  // three displacements a node, those that a node has not with a one on the diagonal.
-  void analyze(const SymmetricPattern& pattern, std::span<const UnknownGeometry> geometry, bool padded);
-  // The same call on all ranks; false where one of them has a value that is not finite.
+  // three displacements a node, those that a node has not with a one on the diagonal. `symmetric`: in its
+  // values too.
+  void analyze(const SymmetricPattern& pattern, std::span<const UnknownGeometry> geometry, bool padded,
+               bool symmetric = true);
+  // The same call on all ranks; false where one of them has a value that is not finite. The lower
+  // triangle, and behind it the transposed upper one where the matrix is unsymmetric.
   bool set_values(std::span<const double> values);
 
   Mat matrix() const { return matrix_; }
@@ -54,7 +57,7 @@ class SharedMatrix {
   Index rank() const { return static_cast<Index>(ranks_.rank()); }
   void clear();
   void number(const SymmetricPattern& pattern, std::span<const UnknownGeometry> geometry, bool padded);
-  void preallocate(const SymmetricPattern& pattern);
+  void preallocate(const SymmetricPattern& pattern, bool symmetric);
 
   const Ranks& ranks_;
   const SymmetricPattern* pattern_ = nullptr;

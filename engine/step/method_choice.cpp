@@ -130,17 +130,8 @@ std::string not_by_sweeps(const WorldOptions& options) {
 
 }  // namespace
 
-std::string not_across_ranks(const SystemParts& parts, const WorldOptions& options) {
+std::string not_across_ranks(const WorldOptions& options) {
   const std::string end = ", which is not shared out over ranks yet; ";
-  for (const auto& pool : parts.stencil_pools) {
-    const StencilFacets f = pool->facets();
-    const std::string who = "world: \"" + std::string(pool->name()) + "\" ";
-    if (f.renewed) return who + "changes with what is close" + end + "leave it out, or run on one process";
-    if (f.lagged && f.lagged->couples())
-      return who + "is coupled and makes matrices unsymmetric" + end + "use lagged, or run on one process";
-  }
-  if (options.scheme->follows_paths())
-    return "world: continuation() follows a path" + end + "use statics(), or run on one process";
   switch (options.method) {
     case Method::automatic:
     case Method::saddle_point:

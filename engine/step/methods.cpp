@@ -39,7 +39,7 @@ bool Methods::large(const SystemParts& parts) const {
 Result<void> Methods::choose(SystemParts parts, const System* like) {
   if (std::string why = incompatible(parts, options_); !why.empty()) return Error{std::move(why)};
   if (ranks_) {
-    if (std::string why = not_across_ranks(parts, options_); !why.empty()) return Error{std::move(why)};
+    if (std::string why = not_across_ranks(options_); !why.empty()) return Error{std::move(why)};
   }
   return make(std::move(parts), false, like);
 }
@@ -165,6 +165,11 @@ std::unique_ptr<LinearSolver> Methods::make_solver(const System& system, bool pr
   return make_two_level_solver(std::move(solver), choice);
 }
 
+// Those of ranks tell by their values which matrix it is.
+std::unique_ptr<LinearSolver> Methods::make_unsymmetric() const {
+  return ranks_ ? ranks_->linear_solver(Solver::mumps, false) : make_unsymmetric_solver(options_.solver);
+}
+
 Result<void> Methods::make_for(std::shared_ptr<System> system, bool prefer_iterative, bool keep_solvers) {
   std::unique_ptr<LinearSolver> solver, unsymmetric;
   if (!keep_solvers) solver = make_solver(*system, prefer_iterative && !system->couples());
@@ -174,7 +179,7 @@ Result<void> Methods::make_for(std::shared_ptr<System> system, bool prefer_itera
   if (keep_solvers) solver = release_solver(unsymmetric);
   system_.swap(system);
   try {
-    if (system_->couples() && !unsymmetric) unsymmetric = make_unsymmetric_solver(options_.solver);
+    if (system_->couples() && !unsymmetric) unsymmetric = make_unsymmetric();
     list_stand_ins();
     make_chosen(std::move(solver), std::move(unsymmetric));
   } catch (...) {
@@ -197,7 +202,7 @@ void Methods::remake() {
   const bool prefer_iterative = large(system_->parts()) && !system_->couples();
   auto solver = make_solver(*system_, prefer_iterative);
   std::unique_ptr<LinearSolver> unsymmetric;
-  if (system_->couples()) unsymmetric = make_unsymmetric_solver(options_.solver);
+  if (system_->couples()) unsymmetric = make_unsymmetric();
   list_stand_ins();
   make_chosen(std::move(solver), std::move(unsymmetric));
 }

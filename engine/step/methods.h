@@ -52,6 +52,7 @@ class Methods {
   void list_stand_ins();
   Result<std::shared_ptr<System>> compile_system(SystemParts parts, const System* like) const;
   std::unique_ptr<LinearSolver> make_solver(const System& system, bool prefer_iterative) const;
+  std::unique_ptr<LinearSolver> make_unsymmetric() const;
   bool may_have_two_levels(const System& system) const;
   std::unique_ptr<LinearSolver> release_solver(std::unique_ptr<LinearSolver>& unsymmetric);
   void make_chosen(std::unique_ptr<LinearSolver> solver, std::unique_ptr<LinearSolver> unsymmetric);
@@ -73,7 +74,7 @@ class Methods {
 std::string_view to_string(Method method);
 RowTreatment treatment_of(Method method);
 // Why a scene cannot be shared out over ranks; empty where it can.
-std::string not_across_ranks(const SystemParts& parts, const WorldOptions& options);
+std::string not_across_ranks(const WorldOptions& options);
 // Why scheme, method and pools do not go together; empty where they do.
 std::string incompatible(const SystemParts& parts, const WorldOptions& options);
 

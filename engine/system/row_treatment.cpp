@@ -33,16 +33,21 @@ RowTreatment RowTreatments::choose(const RowPool& pool) const {
       return RowTreatment::saddle;
   }
   if (pool.rows() == 0 || !check_condensed(pool, "")) return RowTreatment::saddle;
-  const Index functions = system_.parts().stencil_pools[at(pool.stencil_pool)]->functions();
-  for (Index r = 0; r < pool.rows(); ++r) {
-    for (const Index f : pool.map[r]) {
-      if (f / functions != pool.map[r][0] / functions) return RowTreatment::saddle;
-    }
-  }
+  if (over_several_stencils(pool)) return RowTreatment::saddle;
   for (const ComplianceEntry& e : pool.compliance) {
     if (e.value < smallest * pool.metric[at(e.row)]) return RowTreatment::saddle;
   }
   return RowTreatment::condensed;
+}
+
+bool RowTreatments::over_several_stencils(const RowPool& pool) const {
+  const Index functions = system_.parts().stencil_pools[at(pool.stencil_pool)]->functions();
+  for (Index r = 0; r < pool.rows(); ++r) {
+    for (const Index f : pool.map[r]) {
+      if (f / functions != pool.map[r][0] / functions) return true;
+    }
+  }
+  return false;
 }
 
 bool RowTreatments::couples(const RowPool& pool) const {
@@ -79,7 +84,11 @@ Result<void> RowTreatments::sort() {
     const RowPool& pool = *pools[p];
     if (pool.law != RowLaw::compliant) continue;
     if (auto r = check_wish(pool); !r) return r;
-    const RowTreatment treatment = choose(pool);
+    RowTreatment treatment = choose(pool);
+    // Of rows over several stencils each rank has a part alone, and condensing one takes all of it. As an
+    // unknown of the matrix it has the same solution.
+    if (treatment == RowTreatment::condensed && system_.shares() && over_several_stencils(pool))
+      treatment = RowTreatment::saddle;
     auto& list = list_of(treatment);
     for (Index r = 0; r < pool.rows(); ++r) {
       const Index row = system_.row_data().first[p] + r;

@@ -20,6 +20,7 @@ class RowTreatments {
   Result<void> check_wish(const RowPool& pool) const;
   RowTreatment choose(const RowPool& pool) const;
   void collect_compliance();
+  bool over_several_stencils(const RowPool& pool) const;
   bool couples(const RowPool& pool) const;
   bool few_wide_rows(const RowPool& pool) const;
   Index index_of(const RowPool& pool) const;

@@ -65,38 +65,6 @@ std::vector<Index> owners_of_rows(const System& system, const SystemTables& t) {
   return owner;
 }
 
-// How a row over a split pool is taken that is not an unknown of the matrix.
-enum class Taken : std::uint8_t { as_unknown, condensed, bordered };
-
-Result<std::vector<Taken>> taken(const System& system, const SystemTables& t,
-                                 const std::vector<bool>& split) {
-  std::vector<Taken> how(at(system.rows()), Taken::as_unknown);
-  if (!t.treated.dual.empty()) {
-    return Error{
-        "world: rows with treatment dual or augmented are not shared out over ranks yet; use another "
-        "treatment, "
-        "or run on one process"};
-  }
-  for (const Index r : t.treated.condensed.row) how[at(r)] = Taken::condensed;
-  for (const Index r : t.treated.bordered) how[at(r)] = Taken::bordered;
-  for (std::size_t p = 0; p < split.size(); ++p) {
-    const RowPool& rows = *system.parts().row_pools[p];
-    if (!split[p] || rows.law != RowLaw::compliant) continue;
-    const Index functions = system.parts().stencil_pools[at(rows.stencil_pool)]->functions();
-    for (Index r = 0; r < rows.rows(); ++r) {
-      if (how[at(system.first_row(static_cast<Index>(p)) + r)] != Taken::condensed) continue;
-      const auto map = rows.map[r];
-      if (std::all_of(map.begin(), map.end(), [&](Index f) { return f / functions == map[0] / functions; }))
-        continue;
-      return Error{
-          "world: rows \"" + std::string(rows.name()) + "\" lie over several cells and are condensed, " +
-          "which is not shared out over ranks yet; use treatment saddle (method saddle_point), or rows " +
-          "at cells, or run on one process"};
-    }
-  }
-  return how;
-}
-
 }  // namespace
 
 std::unique_ptr<Shares> share_nodes(const SystemParts& parts) {
@@ -138,9 +106,14 @@ void find_row_begins(Gathers& gathers, Index rows) {
 
 Result<void> share_rows(const System& system, SystemTables& t) {
   Shares& shares = *t.shares;
+  if (!t.treated.dual.empty()) {
+    return Error{
+        "world: rows with treatment dual or augmented are not shared out over ranks yet; use another "
+        "treatment, or run on one process"};
+  }
   const std::vector<bool> split = over_split_pools(system.parts());
-  auto how = taken(system, t, split);
-  if (!how) return how.failure();
+  std::vector<bool> bordered(at(system.rows()), false);
+  for (const Index r : t.treated.bordered) bordered[at(r)] = true;
   shares.share_unknowns(t.unknowns.first);
   shares.share_rows(owners_of_rows(system, t));
   // Of wide rows that go around the matrix every rank needs the whole vector, to which each adds its nodes.
@@ -150,7 +123,7 @@ Result<void> share_rows(const System& system, SystemTables& t) {
     if (!split[p] || rows.law != RowLaw::compliant) continue;
     const Index first = system.first_row(static_cast<Index>(p));
     for (Index r = first; r < first + rows.rows(); ++r) {
-      if (how.value()[at(r)] != Taken::bordered) continue;
+      if (!bordered[at(r)]) continue;
       summed[at(r)] = true;
       shares.summed_rows.push_back(r);
     }

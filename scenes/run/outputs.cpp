@@ -3,10 +3,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <set>
 
 #include "engine/base/atomic_file.h"
 #include "scenes/run/error_places.h"
+#include "scenes/run/pieces.h"
 #include "scenes/run/run_page.h"
 #include "scenes/scene_file.h"
 
@@ -98,10 +98,18 @@ std::string table_row(const StepRecord& r) {
 constexpr const char* kCheckpoint = "checkpoint.state";
 constexpr const char* kPageJournal = "checkpoint.page";
 
-std::string frame_file(const std::string& series, int step) {
+std::string frame_file(const std::string& series, int step, const char* ending = ".vtu") {
   char suffix[24];
-  std::snprintf(suffix, sizeof suffix, "_%05d.vtu", step);
-  return series + suffix;
+  std::snprintf(suffix, sizeof suffix, "_%05d", step);
+  return series + suffix + ending;
+}
+
+// Whether a file is that frame, its list of pieces, or one of its pieces.
+bool is_of_frame(const std::string& file, const std::string& series, int step) {
+  const std::string stem = frame_file(series, step, "");
+  if (!file.starts_with(stem)) return false;
+  const std::string rest = file.substr(stem.size());
+  return rest == ".vtu" || rest == ".pvtu" || (rest.starts_with("_") && rest.ends_with(".vtu"));
 }
 
 bool frame_due(const SceneDef& scene, int step) {
@@ -127,16 +135,16 @@ void remove_files(const fs::path& folder, Of of, Remove which = Remove::all) {
 void remove_frames(const fs::path& folder, const SceneDef& scene, int kept) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const std::string series = series_name(scene, b);
-    std::set<std::string> stay;
-    for (int step = 0; step <= kept; ++step) {
-      if (frame_due(scene, step)) stay.insert(frame_file(series, step));
-    }
     const auto frame = [&](const std::string& file) {
-      return file.starts_with(series + "_") && file.ends_with(".vtu");
+      return file.starts_with(series + "_") && (file.ends_with(".vtu") || file.ends_with(".pvtu"));
+    };
+    const auto stays = [&](const std::string& file) {
+      int step = 0;
+      return std::sscanf(file.c_str() + series.size(), "_%d", &step) == 1 && step <= kept &&
+             frame_due(scene, step) && is_of_frame(file, series, step);
     };
     remove_files(folder / "frames", frame, Remove::what_was_left);
-    remove_files(folder / "frames",
-                 [&](const std::string& file) { return frame(file) && !stay.contains(file); });
+    remove_files(folder / "frames", [&](const std::string& file) { return frame(file) && !stays(file); });
   }
 }
 
@@ -190,8 +198,8 @@ Result<RunOutputs> RunOutputs::open(const std::string& folder, const SceneDef& s
   return RunOutputs(folder, scene);
 }
 
-RunOutputs RunOutputs::silent(const SceneDef& scene) {
-  RunOutputs outputs("", scene);
+RunOutputs RunOutputs::silent(const std::string& folder, const SceneDef& scene) {
+  RunOutputs outputs(folder, scene);
   outputs.silent_ = true;
   return outputs;
 }
@@ -219,8 +227,11 @@ Result<RunOutputs> RunOutputs::reopen(const std::string& folder, const RunView& 
     if (!frame_due(scene, record.step)) continue;
     outputs.last_frame_ = record.step;
     for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-      const std::string file = "frames/" + frame_file(series_name(scene, b), record.step);
+      // One process may go on with what several began, and the other way round.
+      std::string file = "frames/" + frame_file(series_name(scene, b), record.step);
       std::error_code code;
+      if (!fs::exists(fs::path(folder) / file, code))
+        file = "frames/" + frame_file(series_name(scene, b), record.step, ".pvtu");
       if (fs::exists(fs::path(folder) / file, code))
         outputs.frames_[b].push_back({record.time, file});
       else
@@ -277,10 +288,13 @@ Result<void> RunOutputs::write_frame(const RunView& view, std::size_t b, const B
   if (!share.empty()) grid.cell_fields.push_back({"error_share", 1, share});
   const StepRecord& record = view.result.records.back();
   const std::string series = series_name(view.scene, b);
-  const std::string file = "frames/" + frame_file(series, record.step);
-  if (auto r = write_vtu((fs::path(folder_) / file).string(), grid); !r) return r;
+  const std::string file = "frames/" + frame_file(series, record.step, ranks_ ? ".pvtu" : ".vtu");
+  const std::string path = (fs::path(folder_) / file).string();
+  if (auto r = ranks_ ? write_pieces(path, grid, *ranks_) : write_vtu(path, grid); !r) return r;
   frames_[b].push_back({record.time, file});
-  return write_pvd((fs::path(folder_) / (series + ".pvd")).string(), frames_[b]);
+  Result<void> listed;
+  if (!silent_) listed = write_pvd((fs::path(folder_) / (series + ".pvd")).string(), frames_[b]);
+  return ranks_ ? on_all(std::move(listed), *ranks_) : listed;
 }
 
 Result<void> RunOutputs::append_row(const RunView& view) {
@@ -302,11 +316,7 @@ Result<void> RunOutputs::record(const RunView& view, bool last) {
   const bool due = every > 0 && (frame_due(view.scene, step) || last) && step != last_frame_;
   if (due) {
     last_frame_ = step;
-    if (silent_) {
-      for (const BodyId body : view.built.bodies) view.built.world.fields(body);
-      return {};
-    }
-    if (!page_ && view.scene.outputs.page) page_ = RunPage::start(view);
+    if (!silent_ && !page_ && view.scene.outputs.page) page_ = RunPage::start(view);
     std::vector<BodyFields> fields;
     for (std::size_t b = 0; b < view.built.bodies.size(); ++b) {
       fields.push_back(view.built.world.fields(view.built.bodies[b]));

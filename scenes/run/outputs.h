@@ -5,6 +5,7 @@
 #include <string>
 
 #include "isochor/mesh_io.h"
+#include "isochor/ranks.h"
 #include "scenes/run/run_checkpoint.h"
 
 namespace isochor {
@@ -22,9 +23,8 @@ class RunOutputs {
  public:
   // Makes the folder and removes what an earlier run of the scene left in it.
   static Result<RunOutputs> open(const std::string& folder, const SceneDef& scene);
-  // Of a process that runs the scene with others and does not write: it only asks the world for what goes
-  // into files, since ranks answer together.
-  static RunOutputs silent(const SceneDef& scene);
+  // Of a process that runs the scene with others and is not their root: it writes its pieces of frames alone.
+  static RunOutputs silent(const std::string& folder, const SceneDef& scene);
   RunOutputs(RunOutputs&&) noexcept;
   RunOutputs& operator=(RunOutputs&&) noexcept;
   ~RunOutputs();
@@ -35,6 +35,9 @@ class RunOutputs {
   // behind that is removed.
   static Result<RunOutputs> reopen(const std::string& folder, const RunView& view,
                                    const RunCheckpoint& checkpoint);
+
+  // Frames are in pieces from here on, one a rank; the same call on all of several ranks.
+  void share(std::shared_ptr<const Ranks> ranks) { ranks_ = std::move(ranks); }
 
   // After a step (or the rest state): frame, table and summary so far. `last` forces a frame.
   Result<void> record(const RunView& view, bool last);
@@ -59,6 +62,7 @@ class RunOutputs {
   int last_frame_ = -1;
   bool keeps_ = false;  // checkpoints
   bool silent_ = false;
+  std::shared_ptr<const Ranks> ranks_;  // null: frames are whole
   std::unique_ptr<RunPage> page_;
   PageJournal journal_;
 };

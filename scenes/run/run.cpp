@@ -235,7 +235,7 @@ StepReport Run::advance(double middle, double h) {
 bool Run::write(RunOutputs* outputs, bool last) {
   if (!outputs) return true;
   auto r = outputs->record({scene_, built_, result_}, last);
-  return !on_any(options_, !r) || not_written(r ? "rank 0 could not" : r.error());
+  return !on_any(options_, !r) || not_written(r ? "another rank could not" : r.error());
 }
 
 void Run::march(RunOutputs* outputs) {
@@ -329,10 +329,13 @@ std::optional<RunOutputs> open_outputs(const SceneDef& scene, const RunOptions& 
       return {};
     }
   }
-  auto outputs = is_silent(options) ? Result<RunOutputs>(RunOutputs::silent(scene))
+  auto outputs = is_silent(options) ? Result<RunOutputs>(RunOutputs::silent(options.folder, scene))
                  : checkpoint       ? RunOutputs::reopen(options.folder, {scene, built, result}, *checkpoint)
                                     : RunOutputs::open(options.folder, scene);
-  if (!on_any(options, !outputs)) return std::move(outputs).value();
+  if (!on_any(options, !outputs)) {
+    if (options.ranks && options.ranks->size() > 1) outputs.value().share(options.ranks);
+    return std::move(outputs).value();
+  }
   result.reason = outputs ? "rank 0 cannot write the outputs" : outputs.error();
   return {};
 }

@@ -16,11 +16,13 @@ set(_own ${CMAKE_CURRENT_SOURCE_DIR}/machines/scenes)
 set(_statics "cantilever_tenth" "torsion" "thick_tube@steps 2" "cable_finger" "puck_skin@steps 6")
 set(_chambers "gas_tube@steps 4" "thick_sphere_volume@steps 2" "two_chambers@steps 4" "tube@steps 2")
 set(_contact "incline@steps 12" "squeezed_block@steps 10" "ball_drop@bodies[0].mesh.file=meshes/ball_small.msh@steps 24"
-    "indented_puck@steps 1" "${_own}/rubbed_block.json")
+    "indented_puck@steps 1" "${_own}/rubbed_block.json"
+    "${_own}/rubbed_block.json@contacts[0].coupling=coupled" "${_own}/stacked_blocks.json"
+    "${_own}/stacked_blocks.json@surface_contacts[0].coupling=coupled" "bellows@steps 3")
 set(_elements "${_own}/tied_blocks.json" "${_own}/tied_blocks.json@bodies[0].element=tet10@bodies[1].element=tet10"
     "${_own}/tied_blocks.json@bodies[0].element=tet4_edge_smoothed"
     "${_own}/tied_blocks.json@bodies[0].element=hex8@bodies[0].mesh.box.cell_type=hex8"
-    "${_own}/wide_rows.json" "${_own}/thrown_block.json")
+    "${_own}/wide_rows.json" "${_own}/thrown_block.json" "${_own}/condensed_rows.json" "${_own}/bent_path.json")
 foreach(ranks 1 2 3 4)
   foreach(group statics chambers contact elements)
     add_test(NAME machines.${group}_on_${ranks} COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks}

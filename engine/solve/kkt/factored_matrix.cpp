@@ -53,7 +53,9 @@ FactorOutcome FactoredMatrix::factor_unsymmetric(const UnsymmetricPart& part, st
     const auto upper = std::span(both_triangles_).subspan(values_.size());
     std::copy(values_.begin(), values_.end(), lower.begin());
     std::copy(values_.begin(), values_.end(), upper.begin());
-    for (const std::int64_t k : system_.matrix().diagonal) upper[static_cast<std::size_t>(k)] = 0;
+    for (const std::int64_t k : system_.matrix().diagonal) {
+      if (k >= 0) upper[static_cast<std::size_t>(k)] = 0;
+    }
     part.add_to(scale, held, lower, upper);
   }
   return factor_by(unsymmetric_, both_triangles_, scale, seconds);

@@ -156,6 +156,7 @@ void UnsymmetricPart::add_to(std::span<const double> scale, std::span<const std:
   const auto first = s.first_unknown();
   for (std::size_t run = 0; run + 1 < block_run_.size(); ++run) {
     const std::size_t d = block_source_[block_run_[run]].block;
+    if (d == s.gathers().block_ends.size()) continue;  // another rank has it
     const auto [i, j] = s.gathers().block_ends[d];
     const Index ki = first[at(i) + 1] - first[at(i)], kj = first[at(j) + 1] - first[at(j)];
     if (ki == 0 || kj == 0) continue;
@@ -185,8 +186,9 @@ void UnsymmetricPart::add_to(std::span<const double> scale, std::span<const std:
     const Index b = s.basis_of()[at(node)];
     if (b >= 0) sum = transposed_times(s.free_bases()[at(b)].directions, sum);
     for (Index c = 0; c < first[at(node) + 1] - first[at(node)]; ++c) {
-      const auto place = static_cast<std::size_t>(s.matrix().jacobian[3 * d + at(c)]);
-      upper[place] += scale[at(u)] * scale[at(first[at(node)] + c)] * sum[c];
+      const std::int64_t place = s.matrix().jacobian[3 * d + at(c)];
+      if (place < 0) continue;
+      upper[static_cast<std::size_t>(place)] += scale[at(u)] * scale[at(first[at(node)] + c)] * sum[c];
     }
   }
 }

@@ -51,7 +51,8 @@ Run run(const SceneDef& scene, int most_steps, std::shared_ptr<const Ranks> rank
   World& world = built.value().world;
   const StepPlan plan = plan_steps(scene.analysis);
   for (int s = 0; s < std::min(plan.steps, most_steps); ++s) {
-    const StepReport report = world.advance(plan.h);
+    const auto& path_step = scene.analysis.path_step;
+    const StepReport report = path_step ? world.follow(*path_step) : world.advance(plan.h);
     Step step;
     for (const BodyId body : built.value().bodies) {
       const auto x = world.positions(body);
@@ -64,7 +65,8 @@ Run run(const SceneDef& scene, int most_steps, std::shared_ptr<const Ranks> rank
     step.status = report.status;
     step.reason = report.reason;
     out.steps.push_back(std::move(step));
-    if (report.status != StepStatus::converged) break;
+    if (report.status != StepStatus::converged || (path_step && world.time() >= scene.analysis.duration))
+      break;
   }
   Vec3 low{}, high{};
   bool first = true;
