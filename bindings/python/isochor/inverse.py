@@ -269,6 +269,10 @@ def drive(
     Targets that are not reached are no exception: ``reached`` and each of ``targets`` say so. Bad input raises
     :class:`isochor.Error`.
     """
+    for name, values in targets.items() if isinstance(targets, Mapping) else ():
+        for k, value in enumerate(np.atleast_1d(np.asarray(values, object))):
+            if value is None or (isinstance(value, (int, float)) and not math.isfinite(value)):
+                raise Error(f'drive: targets["{name}"][{k}] is {value}; give a finite number at each time')
     given = []
     for name, bounds in amounts.items():
         limits = [-math.inf, math.inf, math.inf]
