@@ -4,7 +4,6 @@
 //                 rest positions: the changed scene is compiled beside the present one
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "engine/base/text.h"
 #include "engine/scene/free_motions.h"
@@ -497,28 +496,29 @@ Result<Equations> World::Impl::Equilibrium::change_beside(const Parameter& p) {
     if (!out) return Error{who + out.error()};
     return out;
   };
+  Result<Equations> as_it_is(Error{""});
+  if (!compared) {
+    as_it_is = equations(0);
+    if (!as_it_is) return as_it_is.failure();
+    if (!is_here(as_it_is.value())) {
+      return Error{who + "at value = " + number(value) +
+                   " it is not what the scene has: the function makes another one; give the value that the "
+                   "scene was made with"};
+    }
+  }
   // On both sides, or on the one that there is (Poisson's ratio ends at 0.5).
   const Difference* how = &central;
   for (const Difference* d : {&above, &below}) {
     bool end = false;
     if (auto next = beside(p, value + d->at[2] * h, end); !next && end) how = d == &above ? &below : &above;
   }
-  std::optional<Equations> as_it_is;
-  if (!compared || how != &central) {
-    auto found = equations(0);
-    if (!found) return found.failure();
-    as_it_is = std::move(found).value();
-    if (!is_here(*as_it_is)) {
-      return Error{who + "at value = " + number(value) +
-                   " it is not what the scene has: the function makes another one; give the value that the "
-                   "scene was made with"};
-    }
-  }
+  if (how != &central && !as_it_is) as_it_is = equations(0);
   Equations change(w.system(), watched.size());
   for (std::size_t k = 0; k < how->at.size(); ++k) {
     if (how->weight[k] == 0) continue;
     if (how->at[k] == 0) {
-      change.add(how->weight[k] / h, *as_it_is);
+      if (!as_it_is) return as_it_is.failure();
+      change.add(how->weight[k] / h, as_it_is.value());
       continue;
     }
     auto there = equations(how->at[k]);
