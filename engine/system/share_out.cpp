@@ -86,12 +86,16 @@ std::unique_ptr<Shares> share_nodes(const SystemParts& parts) {
 std::vector<StencilRun> shared_runs(const SystemParts& parts, const StencilPool& pool, const Shares& shares) {
   const bool split = is_split(parts, pool);
   std::vector<StencilRun> runs;
+  Index owner = -1;  // of the last run
   for (Index s = 0; s < pool.stencils(); ++s) {
     const auto nodes = pool.nodes()[s];
     const bool touches = std::any_of(nodes.begin(), nodes.end(), [&](Index i) { return shares.owns(i); });
     if (split && !touches) continue;
-    const bool own = nodes.empty() ? shares.rank() == 0 : shares.owns(nodes[0]);
-    if (runs.empty() || runs.back().end != s || runs.back().own != own) runs.push_back({s, s, own});
+    // Runs end where owners change, whoever asks: pools take stencils of a run together, and what all ranks
+    // evaluate has the same bits on all of them only where they take the same ones.
+    const Index now = nodes.empty() ? 0 : shares.owner(nodes[0]);
+    if (runs.empty() || runs.back().end != s || now != owner) runs.push_back({s, s, now == shares.rank()});
+    owner = now;
     runs.back().end = s + 1;
   }
   return runs;

@@ -38,6 +38,23 @@ std::optional<std::string> attribute(const std::string& tag, const std::string& 
   return found[1].str();
 }
 
+// Of a frame that several ranks wrote (.pvtu) the pieces, each as a body of its own.
+Result<void> add_files(const fs::path& file, std::vector<std::string>& files) {
+  if (file.extension() != ".pvtu") {
+    files.push_back(file.string());
+    return {};
+  }
+  const auto text = text_of(file);
+  if (!text) return text.failure();
+  const std::regex tag("<Piece\\b[^>]*>");
+  for (std::sregex_iterator it(text.value().begin(), text.value().end(), tag), end; it != end; ++it) {
+    const auto piece = attribute(it->str(), "Source");
+    if (!piece) return Error{file.string() + ": " + it->str() + " has no Source"};
+    files.push_back((file.parent_path() / *piece).string());
+  }
+  return {};
+}
+
 Result<Times> read_collection(const fs::path& path) {
   const auto text = text_of(path);
   if (!text) return text.failure();
@@ -46,7 +63,8 @@ Result<Times> read_collection(const fs::path& path) {
   for (std::sregex_iterator it(text.value().begin(), text.value().end(), tag), end; it != end; ++it) {
     const auto file = attribute(it->str(), "file"), time = attribute(it->str(), "timestep");
     if (!file || !time) return Error{path.string() + ": " + it->str() + " has no file or no timestep"};
-    out[std::strtod(time->c_str(), nullptr)].push_back((path.parent_path() / *file).string());
+    if (auto r = add_files(path.parent_path() / *file, out[std::strtod(time->c_str(), nullptr)]); !r)
+      return r.failure();
   }
   if (out.empty()) return Error{path.string() + " names no frames (DataSet)"};
   return out;

@@ -110,6 +110,9 @@ TEST_CASE("ranks write and print what one process does, once") {
   const std::string list = slurp(shell.folder() / "shared/frames/block_00002.pvtu");
   CHECK(count(list, "<Piece Source=\"block_00002_") == 3);
   CHECK(count(slurp(shell.folder() / "shared/block.pvd"), ".pvtu\"") == 3);
+  // Pages are made again from pieces, too, where the build has pages.
+  const Outcome page = shell.sh("'" ISOCHOR_BINARY "' view shared --remake --no-browser");
+  CHECK((page.code == 0 || count(page.err, "has no results page") == 1));
   CHECK(count(shared.out, "outputs in shared/") == 1);
   CHECK(count(shared.out, "2/2") == 1);
   CHECK(shared.err.empty());

@@ -23,8 +23,10 @@ set(_elements "${_own}/tied_blocks.json" "${_own}/tied_blocks.json@bodies[0].ele
     "${_own}/tied_blocks.json@bodies[0].element=tet4_edge_smoothed"
     "${_own}/tied_blocks.json@bodies[0].element=hex8@bodies[0].mesh.box.cell_type=hex8"
     "${_own}/wide_rows.json" "${_own}/thrown_block.json" "${_own}/condensed_rows.json" "${_own}/bent_path.json")
+# A sample of what library_table.py compares in full.
+set(_library "colliding_balls@steps 20" "elbow@steps 2" "painted_arm@steps 1" "thin_strip@steps 1")
 foreach(ranks 1 2 3 4)
-  foreach(group statics chambers contact elements)
+  foreach(group statics chambers contact elements library)
     add_test(NAME machines.${group}_on_${ranks} COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks}
              $<TARGET_FILE:isochor_compare_ranks> ${_${group}})
     set_tests_properties(machines.${group}_on_${ranks} PROPERTIES ENVIRONMENT "${_ranks_environment}" RUN_SERIAL ON

@@ -78,10 +78,12 @@ void UnsymmetricPart::place_blocks() {
       }
     }
   }
+  // By nodes: every rank adds up in this order, whichever blocks it has.
+  const auto nodes_of = [](const BlockSource& b) { return std::array{b.row, b.col}; };
   std::stable_sort(block_source_.begin(), block_source_.end(),
-                   [](const BlockSource& a, const BlockSource& b) { return a.block < b.block; });
+                   [&](const BlockSource& a, const BlockSource& b) { return nodes_of(a) < nodes_of(b); });
   for (std::size_t k = 0; k < block_source_.size(); ++k) {
-    if (k == 0 || block_source_[k].block != block_source_[k - 1].block) block_run_.push_back(k);
+    if (k == 0 || nodes_of(block_source_[k]) != nodes_of(block_source_[k - 1])) block_run_.push_back(k);
   }
   block_run_.push_back(block_source_.size());
 }

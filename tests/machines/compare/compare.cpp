@@ -137,10 +137,11 @@ std::string difference(const Run& alone, const Run& shared, double& largest) {
   return {};
 }
 
-// Whether all ranks have the same bits.
-bool same_bits(const Run& shared, const Ranks& ranks) {
-  std::vector<double> differs(1, 0);
-  for (const Step& step : shared.steps) {
+// The first step after which ranks have different bits; 0: none.
+std::size_t other_bits(const Run& shared, const Ranks& ranks) {
+  for (std::size_t s = 0; s < shared.steps.size(); ++s) {
+    const Step& step = shared.steps[s];
+    double differs = 0;
     std::vector<double> root(3 * step.x.size(), 0);
     for (std::size_t i = 0; ranks.rank() == 0 && i < step.x.size(); ++i) {
       for (int c = 0; c < 3; ++c) root[3 * i + static_cast<std::size_t>(c)] = step.x[i][c];
@@ -148,12 +149,13 @@ bool same_bits(const Run& shared, const Ranks& ranks) {
     ranks.sum(root);
     for (std::size_t i = 0; i < step.x.size(); ++i) {
       for (int c = 0; c < 3; ++c) {
-        if (root[3 * i + static_cast<std::size_t>(c)] != step.x[i][c]) differs[0] = 1;
+        if (root[3 * i + static_cast<std::size_t>(c)] != step.x[i][c]) differs = 1;
       }
     }
+    ranks.sum({&differs, 1});
+    if (differs > 0) return s + 1;
   }
-  ranks.sum(differs);
-  return differs[0] == 0;
+  return 0;
 }
 
 bool compare(const std::string& text, const std::shared_ptr<const Ranks>& ranks) {
@@ -171,7 +173,8 @@ bool compare(const std::string& text, const std::shared_ptr<const Ranks>& ranks)
   const Run shared = run(scene.value(), request.steps, ranks);
   double largest = 0;
   std::string wrong = root ? difference(alone, shared, largest) : "";
-  if (!same_bits(shared, *ranks) && wrong.empty()) wrong = "ranks have different bits";
+  if (const std::size_t step = other_bits(shared, *ranks); step > 0 && wrong.empty())
+    wrong = "step " + std::to_string(step) + ": ranks have different bits";
   double failed = wrong.empty() ? 0 : 1;
   ranks->sum({&failed, 1});
   // What a rank holds of what is shared out.
@@ -183,8 +186,9 @@ bool compare(const std::string& text, const std::shared_ptr<const Ranks>& ranks)
   int iterations = 0, iterations_alone = 0;
   for (const Step& s : shared.steps) iterations += s.iterations;
   for (const Step& s : alone.steps) iterations_alone += s.iterations;
-  std::printf("%s %s: difference %.1e of the length, %d iterations (alone %d)\n",
-              wrong.empty() ? "ok  " : "FAIL", text.c_str(), largest, iterations, iterations_alone);
+  std::printf("%s %s: difference %.1e of the length, %d iterations (alone %d), %zu steps\n",
+              wrong.empty() ? "ok  " : "FAIL", text.c_str(), largest, iterations, iterations_alone,
+              shared.steps.size());
   std::printf("     %s\n     slots and tables in MB, alone %.1f %.1f, ranks", shared.method.c_str(),
               1e-6 * static_cast<double>(alone.slot_bytes), 1e-6 * static_cast<double>(alone.table_bytes));
   for (std::size_t r = 0; r < bytes.size(); r += 2)
