@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/elements/contraction.h"
+#include "engine/elements/relaxation_rates.h"
 #include "engine/math/lane_functions.h"
 
 namespace isochor {
@@ -238,6 +239,98 @@ void RelaxationPool::keep(const StencilRequest& request, const Flow& flow, const
     for (int i = 0; i < 9; ++i) m[9 + i] = svd.V[i][l];
     for (int i = 0; i < 3; ++i) m[18 + i] = left[i][l];
   }
+}
+
+// --- Rates -------------------------------------------------------------------------------------------------
+
+namespace {
+
+Small unit() {
+  return {1, 0, 0, 0, 1, 0, 0, 0, 1};
+}
+
+Small deviator(Small a) {
+  const double mean = (a[0] + a[4] + a[8]) / 3;
+  for (std::size_t i = 0; i < 9; i += 4) a[i] -= mean;
+  return a;
+}
+
+// Zero is a solid without axes yet.
+Small axes_of(std::span<const double> memory) {
+  Small out;
+  std::copy_n(memory.begin() + 9, 9, out.begin());
+  return out == Small{} ? unit() : out;
+}
+
+}  // namespace
+
+void RelaxationPool::smooth(std::span<const double, kNumbers> memory, std::span<double, kSmooth> out) {
+  Small strain{};
+  for (std::size_t i = 0; i < 3; ++i) strain[4 * i] = memory[18 + i];
+  const Small axes = axes_of(memory), whole = times(times(axes, strain), turned_over(axes));
+  for (std::size_t i = 0; i < 9; ++i) {
+    out[i] = memory[i];
+    out[9 + i] = whole[i];
+  }
+}
+
+// Along each number of the memory and of F in turn.
+RelaxationPool::Rates RelaxationPool::rates(const StencilRequest& request, Index stencil, int point) const {
+  const Flow f = flow(request.increment);
+  const Point here{stencil, point};
+  Batch batch;
+  stretch(request, f, &here, 1, batch);
+  StencilRequest exact = request;
+  exact.want = Want::hessian;
+  exact.definiteness = Definiteness::exact;
+  ResponseBatch response;
+  respond(exact, &here, 1, batch, response);
+  Svd3 svd;
+  svd3(batch.elastic, svd);
+  Small viscous, elastic, axes_now, spring, F{};
+  std::array<double, 3> e, squares;
+  for (std::size_t i = 0; i < 9; ++i) {
+    viscous[i] = batch.viscous[i][0];
+    elastic[i] = batch.elastic[i][0];
+    axes_now[i] = svd.V[i][0];
+    spring[i] = response.P[i][0];
+  }
+  double unused = 0;
+  geometry_.deformation_gradient(stencil, point, request.x, request.rest, F.data(), unused);
+  const std::span<const double> kept =
+      request.memory.subspan(kNumbers * (at(stencil * data_->points) + at(point)), kNumbers);
+  Small before = unit();
+  for (std::size_t i = 0; i < 9; ++i) before[i] += kept[i];
+  const Isotropic flowed = exponential(f.before - 1, axes_of(kept), {kept[18], kept[19], kept[20]});
+  for (std::size_t i = 0; i < 3; ++i) squares[i] = svd.sigma[i][0] * svd.sigma[i][0];
+  const Isotropic strain = logarithm(axes_now, squares);
+  const double mean = (strain.value[0] + strain.value[1] + strain.value[2]) / 3;
+  for (std::size_t i = 0; i < 3; ++i) e[i] = 0.5 * (strain.value[i] - mean);
+  const Isotropic shrink = exponential(f.after - 1, axes_now, e);
+  Rates out;
+  for (std::size_t k = 0; k < kSmooth + 9; ++k) {
+    Small d_before{}, d_strain{}, d_F{};
+    (k < 9 ? d_before : k < 18 ? d_strain : d_F)[k % 9] = 1;
+    d_strain = scaled(0.5, sum(d_strain, turned_over(d_strain)));
+    const Small d_viscous = sum(times(d_before, flowed.whole()), times(before, flowed.along(d_strain)));
+    const Small d_elastic = sum(times(d_F, viscous), times(F, d_viscous));
+    if (k < kSmooth) {
+      Small d_spring{};
+      for (int i = 0; i < 9; ++i) {
+        for (int j = 0; j < 9; ++j) d_spring[at(i)] += response.A[packed(i, j)][0] * d_elastic[at(j)];
+      }
+      const Small d_P = sum(times(d_spring, turned_over(viscous)), times(spring, turned_over(d_viscous)));
+      for (std::size_t i = 0; i < 9; ++i) out.stress[kSmooth * i + k] = f.after * d_P[i];
+    }
+    const Small half = times(turned_over(elastic), d_elastic);
+    const Small d_e = scaled(0.5, deviator(strain.along(sum(half, turned_over(half)))));
+    const Small d_kept = sum(times(d_viscous, shrink.whole()), times(viscous, shrink.along(d_e)));
+    for (std::size_t i = 0; i < 9; ++i) {
+      out.memory[(kSmooth + 9) * i + k] = d_kept[i];
+      out.memory[(kSmooth + 9) * (9 + i) + k] = f.after * d_e[i];
+    }
+  }
+  return out;
 }
 
 }  // namespace isochor

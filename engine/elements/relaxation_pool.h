@@ -20,6 +20,8 @@
 // increment has to find them again. Zero is a solid that has rested forever.
 #pragma once
 
+#include <array>
+
 #include "engine/elements/solid_pool.h"
 
 namespace isochor {
@@ -40,6 +42,18 @@ class RelaxationPool final : public StencilPool, public RememberingStencils {
   // First Piola-Kirchhoff stress at a point with the memory of a step that was accepted [Pa], row-major.
   void stress(Index stencil, int point, std::span<const Vec3> x, std::span<const Vec3> rest,
               std::span<const double> memory, double P[9]) const;
+
+  // The same as smooth functions of what happened, without axes that turn where strains come together: F_v^-1
+  // (9) and the elastic logarithmic strain as a tensor (9), row-major.
+  static constexpr std::size_t kSmooth = 18;
+  static void smooth(std::span<const double, kNumbers> memory, std::span<double, kSmooth> out);
+  // How an increment changes at a point with its memory, as smooth numbers, and with F.
+  struct Rates {
+    std::array<double, 9 * kSmooth> stress{};            // of P [Pa] by the memory; F held
+    std::array<double, kSmooth*(kSmooth + 9)> memory{};  // of what is kept, by the memory and F
+  };
+  Rates rates(const StencilRequest& request, Index stencil, int point) const;
+  const SolidData& data() const { return *data_; }
 
   int memory() const override;
   void accept(const StencilRequest& request, std::span<double> memory) const override;

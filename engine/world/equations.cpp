@@ -1,6 +1,7 @@
 #include "engine/world/equations.h"
 
 #include "engine/solve/evaluator.h"
+#include "engine/world/memory_terms.h"
 
 namespace isochor {
 
@@ -13,11 +14,19 @@ void add_to(std::vector<T>& sum, double factor, const std::vector<T>& other) {
 
 }  // namespace
 
+Equations::Equations(const System& s, std::size_t watched)
+    : force(at(s.nodes())),
+      theta(at(s.rows())),
+      position(s.free_bases().size()),
+      seen(watched),
+      kept(MemoryTerms::numbers(s)) {}
+
 void Equations::add(double factor, const Equations& other) {
   add_to(force, factor, other.force);
   add_to(theta, factor, other.theta);
   add_to(position, factor, other.position);
   add_to(seen, factor, other.seen);
+  add_to(kept, factor, other.kept);
 }
 
 Equations equations_at(const EquationsAt& where, const State& state, std::span<const Watched> watched) {
@@ -47,6 +56,7 @@ Equations equations_at(const EquationsAt& where, const State& state, std::span<c
     for (std::size_t r = 0; r < strain.size(); ++r) out.theta[first + r] -= strain[r];
   }
   out.position.assign(p.position.begin(), p.position.end());
+  out.kept = MemoryTerms::kept(s, assembly, state.x, p.memory);
   for (const Watched& one : watched) out.seen.push_back(watched_value(where, state, one));
   return out;
 }
@@ -64,8 +74,10 @@ Result<Equations> World::Impl::equations_beside(Description next, std::span<cons
   const std::shared_ptr<const System> changed = std::move(compiled).value();
   if (changed->nodes() != system().nodes() || changed->rows() != system().rows() ||
       changed->prescribed_rows() != system().prescribed_rows() ||
-      changed->free_bases().size() != system().free_bases().size())
-    return Error{"the scene has other unknowns or rows then, so that there is no derivative"};
+      changed->free_bases().size() != system().free_bases().size() ||
+      changed->memory() != system().memory() ||
+      MemoryTerms::numbers(*changed) != MemoryTerms::numbers(system()))
+    return Error{"the scene has other unknowns, rows or memory then, so that there is no derivative"};
   IncrementData its_data(*changed, amounts.gravity, state, weight);
   Assembly its_assembly(changed, *parallel);
   return equations_at({*changed, its_assembly, its_data, built.value().instances, next.builder, inertia},

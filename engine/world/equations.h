@@ -12,10 +12,10 @@ struct Equations {
   std::vector<double> theta;   // phi - target - C lambda
   std::vector<Vec3> position;  // targets of given nodes, as SaddleProblem::position
   std::vector<double> seen;    // of what somebody watches
+  std::vector<double> kept;    // what materials remember at the end of the increment (MemoryTerms)
 
   Equations() = default;
-  explicit Equations(const System& s, std::size_t watched = 0)
-      : force(at(s.nodes())), theta(at(s.rows())), position(s.free_bases().size()), seen(watched) {}
+  explicit Equations(const System& s, std::size_t watched = 0);
   void add(double factor, const Equations& other);
 };
 

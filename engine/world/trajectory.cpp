@@ -53,7 +53,7 @@ Result<void> World::Impl::Trajectory::check() {
   if (w_.settled) return trajectory_error("the state is unfinished; take a step without a budget first");
   const SystemFacets& facets = w_.system().facets();
   const char* why = nullptr;
-  if (!facets.remembering.empty()) why = "a material remembers what came before";
+  if (!MemoryTerms::follows(w_.system())) why = "a material that softens remembers what came before";
   if (!facets.remembering_rows.empty())
     why = "gas and liquid in chambers remember what they were filled with";
   if (!facets.renewed.empty()) why = "contact on surfaces renews its rows";
@@ -76,6 +76,13 @@ bool is_of_positions(const Output& o) {
   return o.kind == positions || o.kind == distance || o.kind == square || o.kind == function;
 }
 
+bool needs_springs(const Output& o) {
+  const std::string& part = o.quantity;
+  const bool energy = o.kind == Output::Kind::energy;
+  return o.kind == Output::Kind::stress ||
+         (energy && (part == "elastic" || part == "potential" || part == "total"));
+}
+
 }  // namespace
 
 Result<void> World::Impl::Trajectory::check_outputs() const {
@@ -90,6 +97,12 @@ Result<void> World::Impl::Trajectory::check_outputs() const {
       if (names_effect(term.output)) {
         if (auto r = world_.check(term.output.effect); !r) return in_list("outputs", j, r.failure());
       }
+      // Springs of what flows beside store energy, and carry stress, that outputs do not follow.
+      if (MemoryTerms::numbers(w_.system()) > 0 && needs_springs(term.output))
+        return trajectory_error(
+            who +
+            ": stresses and elastic energies of materials that remember are not followed; "
+            "take positions, gauges, reactions or forces");
       if (is_of_positions(term.output) || (ends_there() && term.step > 0)) continue;
       return trajectory_error(
           who +
@@ -106,6 +119,11 @@ Result<void> World::Impl::Trajectory::check_parameters() const {
     if (names_effect(p)) {
       if (auto r = world_.check(p.effect); !r) return in_list("parameters", k, r.failure());
     }
+    const bool stiffness = p.kind == Parameter::Kind::cells || p.kind == Parameter::Kind::stiffness;
+    if (stiffness && MemoryTerms::numbers(w_.system()) > 0)
+      return trajectory_error("parameters[" + std::to_string(k) +
+                              "]: factors on the stiffness of materials that remember are not followed; take "
+                              "constants of the material");
     if (p.kind == Parameter::Kind::cells && query_.mode == GradientQuery::Mode::tangent)
       return trajectory_error(
           "cell_stiffness is a number a cell, and tangents would solve as often; ask by "

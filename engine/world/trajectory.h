@@ -25,6 +25,7 @@
 #include <optional>
 
 #include "engine/world/gradient_parts.h"
+#include "engine/world/memory_terms.h"
 #include "engine/world/step_map.h"
 
 namespace isochor {
@@ -60,7 +61,14 @@ class World::Impl::Trajectory {
     Equilibrium& eq;
     std::span<OutputSeed> seeds;
     std::span<const Equations> change;
+    const MemoryTerms& memory;
   };
+  // Of the beginning of an increment, how it is felt or moves: lists of nodes, and numbers of memory.
+  struct Carried {
+    Lists3 lists;
+    std::vector<double> memory;
+  };
+  std::vector<Carried> nothing(std::size_t count) const;
   Index steps() const { return static_cast<Index>(query_.steps.size()); }
   bool dissipates() const { return !w_.system().facets().dissipative.empty(); }
   bool ends_there() const { return w_.options.scheme->evaluated_at() == 1; }
@@ -86,9 +94,9 @@ class World::Impl::Trajectory {
   Result<void> in_increment(Index n, Gradients& out, Visit&& visit);
   Result<void> go_back(Gradients& out);
   Result<void> go_along(Gradients& out);
-  void add_start(std::span<const OutputSeed> seeds, std::vector<Lists3>& felt, Gradients& out) const;
-  Result<void> step_back(const Linearized& here, std::vector<Lists3>& felt, Gradients& out) const;
-  Result<void> step_along(const Linearized& here, std::vector<Lists3>& moved, Gradients& out) const;
+  void add_start(std::span<const OutputSeed> seeds, std::vector<Carried>& felt, Gradients& out) const;
+  Result<void> step_back(const Linearized& here, std::vector<Carried>& felt, Gradients& out) const;
+  Result<void> step_along(const Linearized& here, std::vector<Carried>& moved, Gradients& out) const;
   // What an increment adds to the gradients by the adjoint of output j.
   Result<void> gather(const Linearized& here, std::size_t j, const Adjoint& adjoint, Gradients& out) const;
   Result<std::vector<Equations>> changes(Equilibrium& eq) const;

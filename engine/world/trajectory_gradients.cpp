@@ -179,6 +179,11 @@ std::vector<Vec3> World::Impl::Trajectory::dissipation_back(const Increment& inc
   return difference(dissipation(i, i.before, end.up), dissipation(i, i.before, end.down), end.step);
 }
 
+std::vector<World::Impl::Trajectory::Carried> World::Impl::Trajectory::nothing(std::size_t count) const {
+  return std::vector<Carried>(
+      count, {zeros(lists_, w_.state.x.size()), std::vector<double>(MemoryTerms::numbers(w_.system()))});
+}
+
 // --- The two ways ------------------------------------------------------------------------------------------
 
 template <class Visit>
@@ -201,46 +206,54 @@ Result<void> World::Impl::Trajectory::in_increment(Index n, Gradients& out, Visi
   const auto change = changes(eq);
   if (!change) return change.failure();
   compared_ = true;
-  if (auto r = visit(Linearized{n, increment, eq, seeds.value(), change.value()}); !r) return r;
+  const MemoryTerms memory(w_.system(), w_.assembly(), increment.inertia.increment, w_.state.x,
+                           w_.layout.of_pools(w_.state.extra));
+  if (auto r = visit(Linearized{n, increment, eq, seeds.value(), change.value(), memory}); !r) return r;
   look_for_edges(n, out);
   return {};
 }
 
-Result<void> World::Impl::Trajectory::step_back(const Linearized& here, std::vector<Lists3>& felt,
+Result<void> World::Impl::Trajectory::step_back(const Linearized& here, std::vector<Carried>& felt,
                                                 Gradients& out) const {
   const StepMap& map = here.increment.map;
   for (std::size_t j = 0; j < felt.size(); ++j) {
     OutputSeed& seed = here.seeds[j];
-    add_to(felt[j][0], 1, seed.x);
-    add_to(felt[j][1], 1, seed.v);
+    add_to(felt[j].lists[0], 1, seed.x);
+    add_to(felt[j].lists[1], 1, seed.v);
     std::fill(seed.x.begin(), seed.x.end(), Vec3{});
-    for (std::size_t k = 0; k < lists_; ++k) add_to(seed.x, map.found[k], felt[j][k]);
+    for (std::size_t k = 0; k < lists_; ++k) add_to(seed.x, map.found[k], felt[j].lists[k]);
+    std::vector<double> remembered = here.memory.back(felt[j].memory, seed.x);
     const auto adjoint = here.eq.adjoint_of(seed);
     if (!adjoint) return in_step(here.step, adjoint.failure());
     const std::vector<Vec3>& a = adjoint.value().force;
     if (auto r = gather(here, j, adjoint.value(), out); !r) return r;
+    for (std::size_t k = 0; k < query_.parameters.size(); ++k) {
+      const std::vector<double>& kept = here.change[k].kept;
+      for (std::size_t i = 0; i < kept.size(); ++i) out.by[j][k][0] += felt[j].memory[i] * kept[i];
+    }
+    here.memory.add_force_back(-1, a, remembered);
     const auto pull = heavy(map.mass_scale, a);
     Lists3 before = zeros(lists_, w_.state.x.size());
     for (std::size_t b = 0; b < lists_; ++b) {
-      for (std::size_t k = 0; k < lists_; ++k) add_to(before[b], map.before[k][b], felt[j][k]);
+      for (std::size_t k = 0; k < lists_; ++k) add_to(before[b], map.before[k][b], felt[j].lists[k]);
       add_to(before[b], map.predicted[b], pull);
     }
     if (dissipates()) add_to(before[0], -1, dissipation_back(here.increment, a));
-    felt[j] = std::move(before);
+    felt[j] = {std::move(before), std::move(remembered)};
   }
   return {};
 }
 
 // What the start itself has to do with outputs.
-void World::Impl::Trajectory::add_start(std::span<const OutputSeed> seeds, std::vector<Lists3>& felt,
+void World::Impl::Trajectory::add_start(std::span<const OutputSeed> seeds, std::vector<Carried>& felt,
                                         Gradients& out) const {
   for (std::size_t j = 0; j < felt.size(); ++j) {
-    add_to(felt[j][0], 1, seeds[j].x);
+    add_to(felt[j].lists[0], 1, seeds[j].x);
     for (std::size_t k = 0; k < query_.parameters.size(); ++k) {
       const Parameter& p = query_.parameters[k];
       if (p.kind != Parameter::Kind::shape && p.kind != Parameter::Kind::velocity) continue;
       const auto motion = in_scene(p);
-      const auto& list = felt[j][p.kind == Parameter::Kind::shape ? 0 : 1];
+      const auto& list = felt[j].lists[p.kind == Parameter::Kind::shape ? 0 : 1];
       for (std::size_t i = 0; i < motion.size(); ++i) out.by[j][k][0] += dot(list[i], motion[i]);
     }
   }
@@ -248,7 +261,7 @@ void World::Impl::Trajectory::add_start(std::span<const OutputSeed> seeds, std::
 
 Result<void> World::Impl::Trajectory::go_back(Gradients& out) {
   // dJ/dy behind the increment at hand.
-  std::vector<Lists3> felt(query_.outputs.size(), zeros(lists_, w_.state.x.size()));
+  std::vector<Carried> felt = nothing(query_.outputs.size());
   const auto visit = [&](const Linearized& here) { return step_back(here, felt, out); };
   if (auto r = each_backward([&](Index n) { return in_increment(n, out, visit); }); !r) return r;
   Equilibrium eq(w_);
@@ -277,31 +290,34 @@ double product(std::span<const Vec3> a, std::span<const Vec3> b) {
 
 }  // namespace
 
-Result<void> World::Impl::Trajectory::step_along(const Linearized& here, std::vector<Lists3>& moved,
+Result<void> World::Impl::Trajectory::step_along(const Linearized& here, std::vector<Carried>& moved,
                                                  Gradients& out) const {
   const StepMap& map = here.increment.map;
   const std::size_t nodes = w_.state.x.size();
   for (std::size_t k = 0; k < moved.size(); ++k) {
     const Equations& change = here.change[k];
     std::vector<Vec3> carried(nodes);
-    for (std::size_t b = 0; b < lists_; ++b) add_to(carried, map.predicted[b], moved[k][b]);
+    for (std::size_t b = 0; b < lists_; ++b) add_to(carried, map.predicted[b], moved[k].lists[b]);
     std::vector<Vec3> load = heavy(map.mass_scale, carried);
     std::vector<double> row(change.theta);
     for (double& r : row) r = -r;
     add_to(load, -1, change.force);
-    if (dissipates()) add_to(load, -1, dissipation_along(here.increment, moved[k][0]));
+    if (dissipates()) add_to(load, -1, dissipation_along(here.increment, moved[k].lists[0]));
+    here.memory.add_force(-1, moved[k].memory, load);
     if (auto r = here.eq.solve(load, row, here.eq.way_of(change.position)); !r)
       return in_step(here.step, r.failure());
     Lists3 after = zeros(lists_, nodes);
     for (std::size_t a = 0; a < lists_; ++a) {
-      for (std::size_t b = 0; b < lists_; ++b) add_to(after[a], map.before[a][b], moved[k][b]);
+      for (std::size_t b = 0; b < lists_; ++b) add_to(after[a], map.before[a][b], moved[k].lists[b]);
       add_to(after[a], map.found[a], here.eq.dx);
     }
-    moved[k] = std::move(after);
+    std::vector<double> remembered = here.memory.onward(moved[k].memory, here.eq.dx);
+    for (std::size_t i = 0; i < change.kept.size(); ++i) remembered[i] += change.kept[i];
+    moved[k] = {std::move(after), std::move(remembered)};
     for (std::size_t j = 0; j < out.by.size(); ++j) {
       const OutputSeed& seed = here.seeds[j];
-      out.by[j][k][0] += Equilibrium::held(seed, change) + along(seed, moved[k][0], here.eq.dlambda) +
-                         product(seed.v, moved[k][1]) - product(seed.through, load);
+      out.by[j][k][0] += Equilibrium::held(seed, change) + along(seed, moved[k].lists[0], here.eq.dlambda) +
+                         product(seed.v, moved[k].lists[1]) - product(seed.through, load);
     }
   }
   return {};
@@ -309,10 +325,10 @@ Result<void> World::Impl::Trajectory::step_along(const Linearized& here, std::ve
 
 Result<void> World::Impl::Trajectory::go_along(Gradients& out) {
   const std::size_t parameters = query_.parameters.size();
-  std::vector<Lists3> moved(parameters, zeros(lists_, w_.state.x.size()));  // dy/dp before the increment
+  std::vector<Carried> moved = nothing(parameters);  // dy/dp before the increment
   for (std::size_t k = 0; k < parameters; ++k) {
     const bool velocity = query_.parameters[k].kind == Parameter::Kind::velocity;
-    moved[k][velocity ? 1 : 0] = in_scene(query_.parameters[k]);
+    moved[k].lists[velocity ? 1 : 0] = in_scene(query_.parameters[k]);
     for (auto& by : out.by) by[k].assign(1, 0.0);
   }
   Equilibrium eq(w_);
@@ -320,7 +336,7 @@ Result<void> World::Impl::Trajectory::go_along(Gradients& out) {
   if (!seeds) return seeds.failure();
   for (std::size_t k = 0; k < parameters; ++k) {
     for (std::size_t j = 0; j < out.by.size(); ++j)
-      out.by[j][k][0] += along(seeds.value()[j], moved[k][0], {});
+      out.by[j][k][0] += along(seeds.value()[j], moved[k].lists[0], {});
   }
   const auto visit = [&](const Linearized& here) { return step_along(here, moved, out); };
   return each_forward([&](Index n) { return in_increment(n, out, visit); });

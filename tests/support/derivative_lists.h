@@ -46,6 +46,19 @@ inline std::vector<Asked> parameters_of(const Block& block) {
        &Knobs::poisson},
       {"stiffness", Parameter::stiffness(block.body), &Knobs::stiffness},
       {"shape", Parameter::shape(block.body, shape_motion(block.world.mesh(block.body))), &Knobs::shape}};
+  if (k.ratio > 0) {
+    // Factors on the stiffness of what remembers are refused.
+    std::erase_if(out, [](const Asked& a) { return a.name == "stiffness"; });
+    for (double Knobs::*const knob : {&Knobs::ratio, &Knobs::fades}) {
+      const auto law = [k, knob](double v) {
+        Knobs other = k;
+        other.*knob = v;
+        return material_of(k.young, k.poisson, other);
+      };
+      out.push_back({knob == &Knobs::ratio ? "share that relaxes" : "time of relaxation",
+                     Parameter::material(block.body, "", k.*knob, law), knob});
+    }
+  }
   const isochor::Curve curve = cavity_curve(k, block.kind);
   if (!block.kind.changing)
     out.push_back({"amount of a cavity", Parameter::amount_of(block.cavity), &Knobs::cavity});

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "isochor/viscoelastic.h"
 #include "support/worlds.h"
 
 namespace test {
@@ -26,6 +27,7 @@ struct Knobs {
   double viscosity = 0, drag = 0;  // of a damping [Pa s], [1/s]
   double velocity = 0;             // of shape_motion(), at the start [1/s]
   double late = 600;               // of a cavity whose pressure changes: what it gets to
+  double ratio = 0, fades = 0.07;  // of a Prony series: a share, and its time [s]
   std::vector<double> field;       // stiffness of cells; empty: uniform
 };
 inline constexpr Vec3 kPushed{1, 1. / 3, 1. / 3}, kPush{1, 4, 6};  // at a node
@@ -109,6 +111,12 @@ inline isochor::Result<isochor::MaterialPtr> material_of(double young, double po
   isochor::ElasticConstants c;
   c.young = young;
   c.poisson = poisson;
+  if (knobs.ratio > 0) {
+    auto base = isochor::isochoric_neo_hookean(c);
+    if (!base) return base;
+    return isochor::with_prony_series(base.value(), {{knobs.ratio, knobs.fades}, {0.2, 0.02}},
+                                      isochor::StaticTime::seconds);
+  }
   auto made = isochor::neo_hookean(c);
   if (!made || (knobs.field.empty() && knobs.stiffness == 1)) return made;
   std::vector<double> field = knobs.field;

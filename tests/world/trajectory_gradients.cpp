@@ -31,6 +31,14 @@ Knobs moving(double poisson) {
   return knobs;
 }
 
+// What is refused where a material remembers.
+bool is_of_springs(const Output& output) {
+  const std::string& part = output.quantity;
+  return output.kind == Output::Kind::stress ||
+         (output.kind == Output::Kind::energy &&
+          (part == "elastic" || part == "potential" || part == "total"));
+}
+
 // What is of an increment belongs to where that is evaluated, which the midpoint rule does not do at its end.
 std::vector<std::pair<std::string, TimedOutput>> named_outputs(const Block& block, bool at_ends, bool moves) {
   const Index tip = nearest_node(block.world.rest_positions(block.body), {1, 1, 1});
@@ -51,15 +59,19 @@ std::vector<std::pair<std::string, TimedOutput>> named_outputs(const Block& bloc
   if (!at_ends) return out;
   Index step = 0;
   TimedOutput sum;  // several of them at one step
+  const bool remembers = block.knobs.ratio > 0;
   for (auto& [name, output] : measures_of(block)) {
+    if (remembers && is_of_springs(output)) continue;
     step = step % 4 + 1;
     if (output.kind == Output::Kind::gauge) sum.terms.push_back({3, output});
     out.push_back({name, {{{step, output}}}});
   }
   out.push_back({"gauges", sum});
   if (!moves) return out;
-  for (const char* part : {"kinetic", "total"})
+  for (const char* part : {"kinetic", "total"}) {
+    if (remembers && is_of_springs(Output::energy(part))) continue;
     out.push_back({std::string("energy, ") + part, {{{2, Output::energy(part)}, {4, Output::energy(part)}}}});
+  }
   return out;
 }
 
@@ -157,6 +169,30 @@ TEST_CASE("damping looks back over an increment, and gradients with it", "[gradi
       knobs.drag = 3;
       check_list(knobs, {element, VolumeSpace::node, isochor::CavityControl::pressure, 0, false}, scheme);
     }
+  }
+}
+
+TEST_CASE("a viscoelastic material remembers, and gradients with it", "[gradients][memory]") {
+  for (const auto element : kAllElements) {
+    for (const double poisson : {0.3, 0.5}) {
+      CAPTURE(name_of(element), poisson);
+      Knobs knobs = moving(poisson);
+      knobs.ratio = 0.4;
+      check_list(knobs, {element, VolumeSpace::node, isochor::CavityControl::pressure}, isochor::bdf2());
+    }
+  }
+}
+
+TEST_CASE("the same with other schemes, and in statics of seconds", "[gradients][memory]") {
+  for (const SchemePtr& scheme :
+       {isochor::implicit_euler(), isochor::generalized_alpha(0.6), isochor::newmark(), isochor::statics()}) {
+    CAPTURE(std::string(scheme->name()));
+    Knobs knobs = moving(0.45);
+    knobs.ratio = 0.4;
+    if (!scheme->has_inertia()) knobs.velocity = 0;
+    check_list(knobs,
+               {isochor::Element::tet4, VolumeSpace::node, isochor::CavityControl::pressure, 0, true, true},
+               scheme);
   }
 }
 
@@ -344,6 +380,19 @@ TEST_CASE("ways that have no gradients are refused by name, and leave the world 
                q.mode = GradientQuery::Mode::tangent;
              }),
              ContainsSubstring("adjoint"));
+
+  // What of a memory is not followed.
+  Knobs fading = moving(0.3);
+  fading.ratio = 0.4;
+  Block faded = build_block(fading, kind, tight(isochor::implicit_euler()));
+  TrajectoryQuery of_memory = query_of(faded);
+  of_memory.outputs.push_back({{{1, Output::elastic_energy()}}});
+  CHECK_THAT(refusal(faded.world.trajectory_gradients(of_memory)),
+             ContainsSubstring("elastic energies of materials that remember"));
+  of_memory.outputs.pop_back();
+  of_memory.parameters = {Parameter::cell_stiffness(faded.body)};
+  CHECK_THAT(refusal(faded.world.trajectory_gradients(of_memory)),
+             ContainsSubstring("parameters[0]: factors on the stiffness"));
 
   // What lags behind.
   Block rubbed = build_block(moving(0.3), kind, tight(isochor::implicit_euler()));
