@@ -57,6 +57,7 @@ class ThreadRanks final : public isochor::Ranks {
   int rank_;
 };
 
+// Of symmetric matrices, and of unsymmetric ones, whose transposed upper triangle follows the lower one.
 class DenseSolver final : public isochor::LinearSolver {
  public:
   explicit DenseSolver(const isochor::Ranks& ranks) : ranks_(ranks) {}
@@ -67,16 +68,18 @@ class DenseSolver final : public isochor::LinearSolver {
   }
   isochor::FactorReport factor(std::span<const double> values) override {
     const Index n = pattern_->size;
+    const auto entries = static_cast<std::size_t>(pattern_->nonzeros());
     matrix_.setZero(n, n);
     for (Index c = 0; c < n; ++c) {
       for (auto k = pattern_->column_start[at(c)]; k < pattern_->column_start[at(c) + 1]; ++k) {
         const Index r = pattern_->row[static_cast<std::size_t>(k)];
-        matrix_(r, c) = matrix_(c, r) = values[static_cast<std::size_t>(k)];
+        matrix_(c, r) = values[values.size() - entries + static_cast<std::size_t>(k)];
+        matrix_(r, c) = values[static_cast<std::size_t>(k)];
       }
     }
     ranks_.sum({matrix_.data(), at(n) * at(n)});
     isochor::FactorReport report;
-    report.negative_pivots = test::negative_eigenvalues(matrix_);
+    report.negative_pivots = values.size() > entries ? -1 : test::negative_eigenvalues(matrix_);
     inverse_ = test::inverse(matrix_);
     return report;
   }
@@ -159,7 +162,10 @@ std::vector<Outcome> run_on(int size, const isochor::WorldOptions& options, cons
   return outcomes;
 }
 
-void compare(const isochor::WorldOptions& options, const Build& build, double h, int steps, double length) {
+// `most`: slots that a rank may have, of those of one process. Two layers of cells of a small block are
+// border.
+void compare(const isochor::WorldOptions& options, const Build& build, double h, int steps, double length,
+             double most = 0.85) {
   const Outcome alone = run(options, build, h, steps, nullptr);
   REQUIRE(alone.refusal + alone.reason == "");
   for (const int size : {1, 2, 3}) {
@@ -175,8 +181,7 @@ void compare(const isochor::WorldOptions& options, const Build& build, double h,
       CHECK(largest <= 1e-9 * length);
       for (std::size_t k = 0; k < alone.energies.size(); ++k)
         CHECK(rank.energies[k] == Approx(alone.energies[k]).epsilon(1e-7).margin(1e-9));
-      // Two layers of cells of a small block are border, hence no more than that.
-      if (size > 1) CHECK(static_cast<double>(rank.slots) < 0.85 * static_cast<double>(alone.slots));
+      if (size > 1) CHECK(static_cast<double>(rank.slots) < most * static_cast<double>(alone.slots));
     }
   }
 }
@@ -229,6 +234,31 @@ TEST_CASE("a thrown block with a consistent mass matrix falls on ranks as on one
         hold(world, body, {"x0"});
       },
       0.01, 3, 0.25);
+}
+
+TEST_CASE("blocks that rub each other do so on ranks as on one process, with the same bits on all ranks") {
+  const auto sheared = [](isochor::FrictionCoupling coupling) {
+    return [=](World& world) {
+      const auto material = neo_hookean(1e5, 0.3);
+      const isochor::BodyId low = add_body(world, block({0, 0, 0}, {1, 1, 0.5}, {3, 3, 2}),
+                                           isochor::Element::tet4, material, 1000, "lower");
+      const isochor::BodyId high = add_body(world, block({0.1, 0.13, 0.5}, {0.9, 0.9, 1}, {4, 3, 2}),
+                                            isochor::Element::tet4, material, 1000, "upper");
+      hold(world, low, {"z0"});
+      hold(world, high, {"z1"}, {}, {0.06, 0.01, -0.05});
+      isochor::SurfaceContactDef touch;
+      touch.body = low;
+      touch.surfaces = {"z1"};
+      touch.against = high;
+      touch.against_surfaces = {"z0"};
+      touch.friction = 0.4;
+      touch.coupling = coupling;
+      value(world.add(isochor::surface_contact(touch)));
+    };
+  };
+  // Contact is evaluated by all.
+  for (const auto coupling : {isochor::FrictionCoupling::lagged, isochor::FrictionCoupling::coupled})
+    compare(static_options(), sheared(coupling), 0.25, 4, 1.7, 1);
 }
 
 TEST_CASE("what is not shared out over ranks is refused on all of them, by name") {
